@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "identification/fit/dual_filters.hpp"
@@ -34,6 +35,15 @@ double squares_of_white(const Vector& errors, const ErrorColour& colour,
 
 Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
   return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+}
+
+/// The least difference of two values; 0 where all are one.
+double least_step(Vector values) {
+  std::sort(values.begin(), values.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 1; i < values.size(); ++i)
+    if (values(i) > values(i - 1)) least = std::min(least, values(i) - values(i - 1));
+  return std::isfinite(least) ? least : 0;
 }
 
 /// A row for each of the mixtures of outputs whose errors are uncorrelated. Where outputs are
@@ -144,6 +154,7 @@ RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, Row
     : mixtures_(uncorrelated_mixtures(errors)),
       mixed_{record.period_s, record.u, record.y * mixtures_.transpose(), record.segments},
       rows_(rows),
+      order_(fit.model.order()),
       least_rate_(least_rate),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
       squares_(whitened_squares(fit, direct)),
@@ -167,7 +178,21 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
   const double floor = least_deviation * least_deviation * count;
   const Vector more = whitened_squares(simple, direct);
   const double ratio = count * ((more.array() + floor) / (squares_.array() + floor)).log().sum();
-  return !(ratio <= chi_squared_quantile(0.9999, double(extra)));
+  // Two states more are an oscillation, at the frequency of all that fits the errors best.
+  const double modes = double(std::max<Index>(0, order_ - simple.model.order())) / 2;
+  const double places = std::exp(modes * std::log(count) - std::lgamma(modes + 1));
+  return !(ratio <= chi_squared_limit(0.01 / places, int(extra)));
+}
+
+bool errs_within_steps(const Response& fit, const Record& record, RowRange rows) {
+  constexpr double allowed = 1.1;
+  const Matrix errors = errors_of(fit, record, rows);
+  for (Index q = 0; q < errors.cols(); ++q) {
+    const double step = least_step(record.y.col(q).segment(rows.begin, rows.size()));
+    if (!(errors.col(q).norm() <= allowed * step * std::sqrt(double(rows.size()) / 12)))
+      return false;
+  }
+  return true;
 }
 
 bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows, double rate) {

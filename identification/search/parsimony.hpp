@@ -24,8 +24,9 @@ class RicherFit {
   RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
             double least_rate = 0);
 
-  /// Whether the likelihood ratio refutes, at 99.99 %, that a simpler fit of least squares has all
-  /// that is in the outputs. `extra` are the parameters, at least 1, that the richer one has more.
+  /// Whether the likelihood ratio refutes, at 99 %, that a simpler fit of least squares has all
+  /// that is in the outputs, wherever the modes are that the richer one has more. `extra` are the
+  /// parameters, at least 1, that it has more.
   bool refutes(const Response& simple, bool direct, Index extra) const;
 
   /// Returns the rows that count as one in its errors, at least 1: of the output where they last
@@ -46,11 +47,17 @@ class RicherFit {
   Matrix mixtures_;  // p x p, orthogonal
   Record mixed_;     // its outputs are the mixtures
   RowRange rows_;
+  Index order_;
   double least_rate_;
   std::vector<ErrorColour> colours_;
   Vector squares_;  // of its own
   double correlated_rows_;
 };
+
+/// Whether a fit errs no more than the steps of the outputs' values make it: by s / sqrt(12), a
+/// tenth more allowed, where s is the least difference of two values of the output. What is
+/// smaller, no rows can tell.
+bool errs_within_steps(const Response& fit, const Record& record, RowRange rows);
 
 /// Whether the inputs, added up in sums that decay by `rate` [1/row], explain more of a fit's
 /// errors than chance does in 99 of 100 cases: then the outputs have a slow mode that the inputs

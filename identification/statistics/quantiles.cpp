@@ -27,6 +27,30 @@ double chi_squared_quantile(double p, double degrees) {
   return degrees * root * root * root;
 }
 
+namespace {
+
+/// P(chi-squared > limit), from that of one or two degrees on; all terms are positive.
+double chance_above(double limit, int degrees) {
+  const double half = limit / 2;
+  double d = degrees % 2 == 0 ? 2 : 1;
+  double chance = d == 2 ? std::exp(-half) : std::erfc(std::sqrt(half));
+  for (; d < degrees; d += 2)
+    chance += std::exp(d / 2 * std::log(half) - half - std::lgamma(d / 2 + 1));
+  return chance;
+}
+
+}  // namespace
+
+double chi_squared_limit(double probability, int degrees) {
+  double below = 0, above = degrees;
+  while (chance_above(above, degrees) > probability) above *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (below + above) / 2;
+    (chance_above(middle, degrees) > probability ? below : above) = middle;
+  }
+  return above;
+}
+
 /// R. A. Fisher, E. A. Cornish, Technometrics 2(2), 1960.
 double student_quantile(double p, double degrees) {
   const double z = normal_quantile(p), z2 = z * z;

@@ -9,6 +9,9 @@ double normal_quantile(double p);
 /// Returns that of chi-squared, degrees >= 1: from three on within 0.2 % at p = 0.95, else 2.5 %.
 double chi_squared_quantile(double p, double degrees);
 
+/// Returns what chi-squared with degrees >= 1 exceeds with this probability, 1e-300 to 1.
+double chi_squared_limit(double probability, int degrees);
+
 /// Returns that of Student's t, degrees >= 5: within 0.2 % at p = 0.975.
 double student_quantile(double p, double degrees);
 

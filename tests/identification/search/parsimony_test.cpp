@@ -2,6 +2,8 @@
 #include "identification/search/parsimony.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <ostream>
 #include <string>
 #include <variant>
@@ -43,12 +45,18 @@ void PrintTo(const Kind& kind, std::ostream* out) {
   *out << kind.name;
 }
 
+/// REIDENT_RECORDS, or 20.
+std::uint64_t records_asked() {
+  const char* asked = std::getenv("REIDENT_RECORDS");
+  return asked ? std::strtoull(asked, nullptr, 10) : 20;
+}
+
 class Parsimony : public testing::TestWithParam<Kind> {};
 
 TEST_P(Parsimony, TheOrderThatIsThereIsChosenInNineOfTenRecords) {
-  constexpr int records = 20;
+  const std::uint64_t records = records_asked();
   const Kind& kind = GetParam();
-  int right = 0, invented = 0;
+  std::uint64_t right = 0, invented = 0;
   for (std::uint64_t seed = 1; seed <= records; ++seed) {
     test::Noise noise(seed);
     const StateSpaceModel system =
@@ -60,16 +68,41 @@ TEST_P(Parsimony, TheOrderThatIsThereIsChosenInNineOfTenRecords) {
     invented += has_invented_mode(found.model, system);
   }
   EXPECT_GE(right, records * 9 / 10);
-  EXPECT_EQ(invented, 0);
+  EXPECT_LE(invented, records / 100);
+  RecordProperty("right", std::to_string(right));
 }
 
 INSTANTIATE_TEST_SUITE_P(Simulated, Parsimony,
                          testing::Values(Kind{"OneStateLongRecord", 1, 1, 1, 1500, 0.003},
                                          Kind{"OneStateShortRecord", 1, 2, 1, 300, 0.02},
                                          Kind{"StaticGain", 0, 2, 1, 500, 0.05},
+                                         Kind{"StaticGainsOfTwoOutputs", 0, 2, 2, 1000, 0.01},
                                          Kind{"StaticGainWithoutNoise", 0, 1, 2, 120, 0},
                                          Kind{"ThreeStates", 3, 2, 2, 1500, 0.005}),
                          [](const auto& kind) { return kind.param.name; });
+
+/// A coarse sensor's steps follow the output: a step of the input has the same stairs each time,
+/// which states imitate.
+TEST(Parsimony, StepsOfASensorGetNoStates) {
+  const std::uint64_t records = records_asked();
+  for (const double step : {0.25, 0.05}) {
+    std::uint64_t right = 0;
+    for (std::uint64_t seed = 1; seed <= records; ++seed) {
+      test::Noise noise(seed);
+      Record record{1, Matrix(1500, 1), Matrix(1500, 1), {{0, 1500, 0}}};
+      double u = 0, state = 0;
+      for (Index t = 0; t < 1500; ++t) {
+        if (noise.uniform() < 1.0 / 30) u = 1 - u;
+        record.u(t, 0) = u;
+        record.y(t, 0) = step * std::round((5 + state) / step);
+        state = 0.95 * state + 0.1 * u;
+      }
+      right += identified(record).recipe.order == 1;
+    }
+    EXPECT_GE(right, records * 9 / 10) << step;
+    RecordProperty("right_of_" + std::to_string(step), std::to_string(right));
+  }
+}
 
 TEST(Parsimony, AnOrderThatIsAskedForIsKept) {
   test::Noise noise(1);
@@ -118,7 +151,7 @@ TEST(Parsimony, AFitOfTheTrueOrderIsRefutedAsOftenAsChanceSays) {
                                              record, record.all(), 25);
       refuted += RicherFit(one_state, true, record, record.all()).refutes(static_fit, true, 3);
     }
-    // At 99.99 %; the pole of a mode that is not there fits what it likes, which takes more.
+    // At 99 %, over all places that the pole of a mode which is not there may have.
     EXPECT_LE(refuted, records / 100) << lasting;
   }
 }

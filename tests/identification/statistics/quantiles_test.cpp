@@ -20,6 +20,15 @@ TEST(ChiSquaredQuantile, IsThatOfTheTables) {
     EXPECT_NEAR(chi_squared_quantile(0.95, degrees) / quantile, 1, degrees < 10 ? 0.025 : 0.001);
 }
 
+TEST(ChiSquaredLimit, IsThatOfTheTables) {
+  const double tables[][3] = {{1, 0.05, 3.8415}, {1, 1e-6, 23.928},  {2, 1e-9, 41.446},
+                              {4, 1e-6, 33.377}, {10, 0.05, 18.307}, {100, 0.05, 124.342}};
+  for (const auto& [degrees, probability, limit] : tables)
+    EXPECT_NEAR(chi_squared_limit(probability, int(degrees)) / limit, 1, 1e-4) << degrees;
+  // Of two degrees it is exponential.
+  EXPECT_NEAR(chi_squared_limit(1e-300, 2), 600 * std::log(10), 1e-9);
+}
+
 TEST(StudentQuantile, IsThatOfTheTables) {
   const double tables[][2] = {{5, 2.5706}, {9, 2.2622}, {20, 2.0860}, {249, 1.9695}};
   for (const auto& [degrees, quantile] : tables)
