@@ -115,13 +115,23 @@ Index InputExpressions::place_of(const std::string& parameter) {
 }
 
 void InputExpressions::evaluate(const Vector& parameters, Vector& inputs) {
-  Index at = 0;
-  for (Input& input : inputs_) {
-    for (std::size_t i = 0; i < input.values.size(); ++i)
-      input.values[i] = parameters(input.operands[i]);
-    inputs(at++) = input.expression ? input.expression->evaluate(input.values)
-                                    : parameters(input.operands.front());
-  }
+  for (Index place = 0; place < inputs.size(); ++place) inputs(place) = evaluate(parameters, place);
+}
+
+double InputExpressions::evaluate(const Vector& parameters, Index place) {
+  Input& input = inputs_[static_cast<std::size_t>(place)];
+  if (!input.expression) return parameters(input.operands.front());
+  for (std::size_t i = 0; i < input.values.size(); ++i)
+    input.values[i] = parameters(input.operands[i]);
+  return input.expression->evaluate(input.values);
+}
+
+std::vector<Index> InputExpressions::inputs_of(Index parameter) const {
+  std::vector<Index> places;
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    if (std::ranges::count(inputs_[i].operands, parameter) > 0)
+      places.push_back(static_cast<Index>(i));
+  return places;
 }
 
 Record InputExpressions::evaluate(Record record) {

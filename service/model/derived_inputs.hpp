@@ -57,6 +57,10 @@ class InputExpressions {
   /// value. Requires both vectors to have their sizes. Allocates nothing.
   void evaluate(const identification::Vector& parameters, identification::Vector& inputs);
 
+  /// Likewise of the input at `place` alone. The inputs that a parameter is an operand of.
+  double evaluate(const identification::Vector& parameters, identification::Index place);
+  std::vector<identification::Index> inputs_of(identification::Index parameter) const;
+
   /// Returns the record with the inputs (N x m) in the place of its u (N x q), which holds
   /// parameters(). Rows at which an input has no finite value are left out as holes are: the record
   /// may have fewer rows and more segments. Where no input is derived it comes back as it is.

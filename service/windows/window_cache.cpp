@@ -19,40 +19,46 @@ using identification::Vector;
 
 namespace {
 
-/// WindowData::bias_effects of the sensor, for biases of a tenth of its values up and down. Where
-/// one of them gives no input that is finite, the other counts. What is not analog has no bias.
-Record bias_effect(const WindowRequest& request, const std::vector<Channel>& channels,
-                   const Record& all, const std::string& sensor, TickRange ticks) {
-  InputExpressions expressions(request.inputs, request.derived);
-  const auto& names = expressions.parameters();
-  const auto place = std::ranges::find(names, sensor) - names.begin();
-  const bool is_analog = channels[static_cast<std::size_t>(place)].is_analog;
-  const double values = std::sqrt(all.u.col(place).squaredNorm() /
-                                  static_cast<double>(std::max<Index>(1, all.rows())));
-  const double bias = values > 0 ? values / 10 : 1;
-  const Record samples = rows_at(all, ticks);
-  Record effect = expressions.evaluate(samples);
-  const Index m = effect.u.cols();
-  effect.u.setZero();
-  effect.y.resize(effect.rows(), 1);
-  Vector raw(samples.u.cols()), above(m), here(m), below(m);
-  const auto inputs_at = [&](Index row, double offset, Vector& found) {
-    raw = samples.u.row(row).transpose();
-    raw(place) += offset;
-    expressions.evaluate(raw, found);
-    return found.allFinite();
-  };
-  Index kept = 0;
-  for (Index row = 0; row < samples.rows(); ++row) {
-    if (!inputs_at(row, 0, here)) continue;  // it is not in the record
-    effect.y(kept, 0) = samples.u(row, place);
-    double width = is_analog ? 2 * bias : 0;
-    if (is_analog && !inputs_at(row, bias, above)) above = here, width -= bias;
-    if (is_analog && !inputs_at(row, -bias, below)) below = here, width -= bias;
-    if (width > 0) effect.u.row(kept) = (above - below).transpose() / width;
-    ++kept;
+/// WindowData::bias_effects of the sensor at `place` of `samples`, for biases up and down. Where
+/// one of them gives an input that is not finite, the other counts; 0: it has none. `inputs` are
+/// those of the samples that have any.
+Record bias_effect(InputExpressions& expressions, Index place, double bias, const Record& samples,
+                   const Record& inputs) {
+  Record effect{inputs.period_s, Matrix::Zero(inputs.rows(), inputs.u.cols()),
+                Matrix(inputs.rows(), 1), inputs.segments};
+  const std::vector<Index> moved = expressions.inputs_of(place);
+  Vector raw, above(std::ssize(moved)), below(std::ssize(moved));
+  for (const identification::Segment& segment : inputs.segments) {
+    Index from = first_row_at(samples, segment.first_tick);
+    for (Index row = segment.begin; row < segment.end; ++row, ++from) {
+      effect.y(row, 0) = samples.u(from, place);
+      if (!(bias > 0)) continue;
+      raw = samples.u.row(from).transpose();
+      const Vector here = inputs.u(row, moved).transpose();
+      double width = 0;
+      const auto move = [&](double offset, Vector& found) {
+        raw(place) = samples.u(from, place) + offset;
+        for (std::size_t i = 0; i < moved.size(); ++i)
+          found(Index(i)) = expressions.evaluate(raw, moved[i]);
+        if (found.allFinite())
+          width += bias;
+        else
+          found = here;
+      };
+      move(bias, above);
+      move(-bias, below);
+      if (width > 0) effect.u(row, moved) = (above - below).transpose() / width;
+    }
   }
   return effect;
+}
+
+/// A tenth of the values of the sensor at `place`, or 1; 0 where it is not analog.
+double bias_of(const std::vector<Channel>& channels, const Record& samples, Index place) {
+  if (!channels[static_cast<std::size_t>(place)].is_analog) return 0;
+  const double values = std::sqrt(samples.u.col(place).squaredNorm() /
+                                  static_cast<double>(std::max<Index>(1, samples.rows())));
+  return values > 0 ? values / 10 : 1;
 }
 
 }  // namespace
@@ -100,15 +106,22 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
   InputExpressions expressions(request_.inputs, request_.derived);
+  std::vector<double> biases;
   if (wanted) {
     window = {wanted->ticks.begin * request_.period, wanted->ticks.end * request_.period};
-    for (const std::string& sensor : wanted->sensors)
-      data.bias_effects.push_back(
-          without(bias_effect(request_, data.input_channels, samples, sensor, wanted->ticks),
-                  data.plausibility.holes));
+    for (Index place = 0; place < samples.u.cols(); ++place)
+      biases.push_back(bias_of(data.input_channels, samples, place));
     samples = rows_at(samples, wanted->ticks);
   }
-  Record read = expressions.evaluate(std::move(samples));
+  Record read = expressions.evaluate(wanted ? Record(samples) : std::move(samples));
+  if (wanted)
+    for (const std::string& sensor : wanted->sensors) {
+      const Index place =
+          std::ranges::find(expressions.parameters(), sensor) - expressions.parameters().begin();
+      data.bias_effects.push_back(
+          without(bias_effect(expressions, place, biases[std::size_t(place)], samples, read),
+                  data.plausibility.holes));
+    }
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);
