@@ -140,11 +140,17 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     const std::string would_be = "the gain from " + rows.input_name(input) + " to " +
                                  channel_name("output", output, rows.options().output_names) +
                                  " would be " + four_digits(found);
-    if (has_sign(-1))
+    const bool begins_otherwise = certain([&](const StateSpaceModel& loop) {
+      return -found * step_response(loop, one.output, one.input, past);
+    });
+    if (has_sign(-1) || begins_otherwise)
       return Verdict{VerdictCode::closed_loop,
                      "closed loop: " + who + "; " + would_be +
-                         ", which is the controller's: by a method for closed loops it has the "
-                         "other sign; take what drives the loop as the input"};
+                         ", which is the controller's: by a method for closed loops " +
+                         (has_sign(-1) ? "it has the other sign"
+                                       : "a step begins with the other sign, and the rows do not "
+                                         "show where it ends") +
+                         "; take what drives the loop as the input"};
     if (one.share > dominant_share && !has_sign(1))
       return Verdict{VerdictCode::closed_loop,
                      "closed loop: " + who + " and hardly moves otherwise; " + would_be +

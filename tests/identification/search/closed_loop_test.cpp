@@ -109,6 +109,39 @@ TEST(ClosedLoop, AThermostatIsToldWithBothResponses) {
   EXPECT_GE(told, 7);
 }
 
+/// The environment swings by a quarter of what the heater adds at rest, unmeasured. The heater is
+/// never on for long, so that the rows show what a step of it begins and not where it ends.
+Record thermostat_in_swings(test::Noise& noise, Index rows, double swing_rows) {
+  Matrix u(rows, 1), y(rows, 1);
+  double temperature = 20;
+  bool is_on = false;
+  for (Index t = 0; t < rows; ++t) {
+    is_on = temperature < 19.5 || (is_on && temperature < 20.5);
+    y(t) = temperature + 0.02 * noise.normal();
+    u(t) = is_on;
+    const double environment = 5 + 5 * std::sin(2 * M_PI * double(t) / swing_rows);
+    temperature += (environment + 30 * is_on - temperature) / 60;
+  }
+  return contiguous_record(1, u, y);
+}
+
+TEST(ClosedLoop, AHeaterDoesNotCool) {
+  int cooling = 0, verdicts = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    test::Noise noise(seed);
+    const Record record = thermostat_in_swings(noise, 3000, seed % 2 == 0 ? 800 : 2000);
+    const IdentifyResult result = identify(record, record.all(), {});
+    if (const auto* found = std::get_if<Identified>(&result)) {
+      const auto gain = static_gain(found->model);
+      cooling += gain && (*gain)(0, 0) < 0;
+    } else {
+      verdicts += std::get<Verdict>(result).code == VerdictCode::closed_loop;
+    }
+  }
+  EXPECT_EQ(cooling, 0);
+  EXPECT_GE(verdicts, 15);
+}
+
 TEST(ClosedLoop, PolesOfThePlantAreFoundWhereItIsUnstable) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     test::Noise noise(seed);
