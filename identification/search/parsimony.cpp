@@ -157,18 +157,19 @@ RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, Row
       order_(fit.model.order()),
       least_rate_(least_rate),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
-      squares_(whitened_squares(fit, direct)),
+      squares_(whitened_squares(fit, direct, colours_)),
       correlated_rows_(most_correlated_rows(errors, ranges_of(segments_from(record, rows)))) {}
 
-Vector RicherFit::whitened_squares(const Response& fit, bool direct) const {
+Vector RicherFit::whitened_squares(const Response& fit, bool direct,
+                                   const std::vector<ErrorColour>& colours) const {
   const int most = fit.model.order() == 0 ? 0 : steps;
   const Response white =
-      refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours_, least_rate_);
+      refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours, least_rate_);
   const Matrix errors = errors_of(white, mixed_, rows_);
   const std::vector<Segment> segments = segments_from(mixed_, rows_);
   Vector squares(errors.cols());
   for (Index q = 0; q < errors.cols(); ++q)
-    squares(q) = squares_of_white(errors.col(q), colours_[static_cast<std::size_t>(q)], segments);
+    squares(q) = squares_of_white(errors.col(q), colours[static_cast<std::size_t>(q)], segments);
   return squares;
 }
 
@@ -176,12 +177,17 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
   assert(extra >= 1);
   const double count = double(rows_.size());
   const double floor = least_deviation * least_deviation * count;
-  const Vector more = whitened_squares(simple, direct);
-  const double ratio = count * ((more.array() + floor) / (squares_.array() + floor)).log().sum();
   // Two states more are an oscillation, at the frequency of all that fits the errors best.
   const double modes = double(std::max<Index>(0, order_ - simple.model.order())) / 2;
   const double places = std::exp(modes * std::log(count) - std::lgamma(modes + 1));
-  return !(ratio <= chi_squared_limit(0.01 / places, int(extra)));
+  const double limit = chi_squared_limit(0.01 / places, int(extra));
+  const auto errs_too_much = [&](const std::vector<ErrorColour>& colours) {
+    const Vector more = whitened_squares(simple, direct, colours);
+    return !(count * ((more.array() + floor) / (squares_.array() + floor)).log().sum() <= limit);
+  };
+  // The richer one may have followed a drift, whose colour is in the simpler one's errors alone.
+  return errs_too_much(colours_) &&
+         errs_too_much(colours_of(mixed(simple, mixtures_), mixed_, rows_));
 }
 
 bool errs_within_steps(const Response& fit, const Record& record, RowRange rows) {

@@ -41,8 +41,9 @@ class RicherFit {
   RicherFit(const Response& fit, bool direct, const Record& record, RowRange rows,
             double least_rate, const Matrix& errors);
 
-  /// Fits again and returns the sums (p) of the squared errors, made white.
-  Vector whitened_squares(const Response& fit, bool direct) const;
+  /// Fits again and returns the sums (p) of the squared errors, made white by these colours.
+  Vector whitened_squares(const Response& fit, bool direct,
+                          const std::vector<ErrorColour>& colours) const;
 
   Matrix mixtures_;  // p x p, orthogonal
   Record mixed_;     // its outputs are the mixtures

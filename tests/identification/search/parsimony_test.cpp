@@ -208,6 +208,26 @@ TEST(Parsimony, ErrorsThatLastGetNoStates) {
   EXPECT_GE(right, records * 3 / 4);
 }
 
+TEST(Parsimony, ARandomWalkGetsNoStates) {
+  const std::uint64_t records = records_asked();
+  std::uint64_t right = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const Matrix u = noise.normal(150, 1).replicate(1, 6).transpose().reshaped(900, 1);
+    StateSpaceModel plant = test::random_system(noise, 1, 1, 1, 0.9);
+    Record record = contiguous_record(1, u, test::simulated(plant, u, Vector::Zero(1)));
+    const double deviation = std::sqrt((record.y.array() - record.y.mean()).square().mean());
+    double walk = 0;
+    for (Index t = 0; t < record.rows(); ++t) {
+      walk += 0.01 * deviation * noise.normal();
+      record.y(t, 0) += walk + 0.02 * deviation * noise.normal();
+    }
+    right += identified(record).recipe.order == 1;
+  }
+  EXPECT_GE(right, records * 4 / 5);
+  RecordProperty("right", std::to_string(right));
+}
+
 TEST(Parsimony, FitsThatKnowHowErrorsLastAreNearerToTheTruth) {
   constexpr int records = 20;
   double gained = 0;
