@@ -140,9 +140,12 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     const std::string would_be = "the gain from " + rows.input_name(input) + " to " +
                                  channel_name("output", output, rows.options().output_names) +
                                  " would be " + four_digits(found);
-    const bool begins_otherwise = certain([&](const StateSpaceModel& loop) {
-      return -found * step_response(loop, one.output, one.input, past);
-    });
+    // What acts at once is no part of the method's model: so the model has to begin so too.
+    const bool begins_otherwise =
+        found * step_response(identified.model, output, input, past) < 0 &&
+        certain([&](const StateSpaceModel& loop) {
+          return -found * step_response(loop, one.output, one.input, past);
+        });
     if (has_sign(-1) || begins_otherwise)
       return Verdict{VerdictCode::closed_loop,
                      "closed loop: " + who + "; " + would_be +
