@@ -34,7 +34,6 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
       effect.y(row, 0) = samples.u(from, place);
       if (!(bias > 0)) continue;
       raw = samples.u.row(from).transpose();
-      const Vector here = inputs.u(row, moved).transpose();
       double width = 0;
       const auto move = [&](double offset, Vector& found) {
         raw(place) = samples.u(from, place) + offset;
@@ -43,7 +42,7 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
         if (found.allFinite())
           width += bias;
         else
-          found = here;
+          found = inputs.u(row, moved).transpose();
       };
       move(bias, above);
       move(-bias, below);
