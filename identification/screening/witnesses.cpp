@@ -10,7 +10,7 @@ namespace {
 
 constexpr double confirmed_deviations = 6;
 constexpr Index compared_rows = 5000;
-// Of the rows: channels that agree in more of them measure the same.
+// A share of the rows: channels that agree in more of them measure one thing.
 constexpr double most_agreeing = 0.01;
 
 /// How far rows [begin, end) stand out from the rows on both sides; 0 of a step.

@@ -389,11 +389,12 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
     const Response simple_fit = fit(simple);
     const bool within_steps = errs_within_steps(simple_fit, data_.normalised, fitted);
-    if (!within_steps && !richer)
-      richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted, least_rate_);
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
-    if (!within_steps && richer->refutes(simple_fit, simple.recipe.direct, extra))
-      return std::nullopt;
+    if (!within_steps) {
+      if (!richer)
+        richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted, least_rate_);
+      if (richer->refutes(simple_fit, simple.recipe.direct, extra)) return std::nullopt;
+    }
     std::vector<Candidate> result = scored({simple}, rows);
     if (result.empty()) return std::nullopt;
     if (within_steps) return std::move(result.front());

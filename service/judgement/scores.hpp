@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "identification/numerics/matrix.hpp"
 #include "identification/statistics/betting.hpp"
 #include "service/windows/block_reader.hpp"
 #include "storage/types/registry_rows.hpp"
@@ -41,7 +42,7 @@ bool counts(const storage::Block& block);
 /// The score of the block that begins there; null without one, or without rows.
 const storage::BlockScore* find(const std::vector<storage::BlockScore>& scores,
                                 storage::Time begin);
-/// Of its record.
+/// Likewise in the member's record: null also before its window, where it may have run too.
 inline const storage::BlockScore* find(const Member& member, storage::Time begin) {
   return begin < member.window.begin ? nullptr : find(member.scores, begin);
 }

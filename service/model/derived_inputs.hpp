@@ -57,8 +57,10 @@ class InputExpressions {
   /// value. Requires both vectors to have their sizes. Allocates nothing.
   void evaluate(const identification::Vector& parameters, identification::Vector& inputs);
 
-  /// Likewise of the input at `place` alone. The inputs that a parameter is an operand of.
+  /// Returns the input at `place` alone, likewise.
   double evaluate(const identification::Vector& parameters, identification::Index place);
+
+  /// Places of the inputs that are computed from the parameter at this place of parameters().
   std::vector<identification::Index> inputs_of(identification::Index parameter) const;
 
   /// Returns the record with the inputs (N x m) in the place of its u (N x q), which holds

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <variant>
 
@@ -119,7 +120,7 @@ Record thermostat_in_swings(test::Noise& noise, Index rows, double swing_rows) {
     is_on = temperature < 19.5 || (is_on && temperature < 20.5);
     y(t) = temperature + 0.02 * noise.normal();
     u(t) = is_on;
-    const double environment = 5 + 5 * std::sin(2 * M_PI * double(t) / swing_rows);
+    const double environment = 5 + 5 * std::sin(2 * std::numbers::pi * double(t) / swing_rows);
     temperature += (environment + 30 * is_on - temperature) / 60;
   }
   return contiguous_record(1, u, y);

@@ -25,7 +25,7 @@ TEST(ChiSquaredLimit, IsThatOfTheTables) {
                               {4, 1e-6, 33.377}, {10, 0.05, 18.307}, {100, 0.05, 124.342}};
   for (const auto& [degrees, probability, limit] : tables)
     EXPECT_NEAR(chi_squared_limit(probability, int(degrees)) / limit, 1, 1e-4) << degrees;
-  // Of two degrees it is exponential.
+  // With two degrees the distribution is exponential.
   EXPECT_NEAR(chi_squared_limit(1e-300, 2), 600 * std::log(10), 1e-9);
 }
 
