@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "identification/numerics/cpu_clones.hpp"
 
@@ -9,68 +10,105 @@ namespace reident::identification {
 
 namespace {
 
-/// Rows [i, i + 4 Quads) of Columns columns of S: their sums stay in registers for all k.
-template <std::size_t Quads, std::size_t Columns>
-REIDENT_INLINE void outer_product_tile(const double* a, Index a_stride, const double* b,
-                                       Index b_stride, Index count, double* S, Index rows) {
-  Four sums[Quads][Columns] = {};
-  for (Index k = 0; k < count; ++k, a += a_stride, b += b_stride)
-    for (std::size_t q = 0; q < Quads; ++q) {
-      const Four left = load(a + 4 * q);
+/// Rows from `row` on of Columns columns of S, as many as Registers registers of Lanes have: their
+/// sums stay there for all k. Of these rows only the last `kept` ones are added.
+template <class Lanes, std::size_t Registers, std::size_t Columns>
+REIDENT_INLINE void outer_product_tile(const VectorSequence& a, const double* b, Index b_stride,
+                                       Index count, Index row, Index kept, double* S) {
+  constexpr Index lanes = sizeof(Lanes) / sizeof(double), height = Index(Registers) * lanes;
+  Lanes sums[Registers][Columns] = {};
+  const double* from = a.data + row;
+  for (Index k = 0; k < count; ++k, from += a.stride, b += b_stride)
+    for (std::size_t q = 0; q < Registers; ++q) {
+      const auto left = load<Lanes>(from + lanes * Index(q));
       for (std::size_t j = 0; j < Columns; ++j) sums[q][j] += left * b[j];
     }
-  for (std::size_t j = 0; j < Columns; ++j)
-    for (std::size_t q = 0; q < Quads; ++q) {
-      double* to = S + Index(j) * rows + 4 * q;
-      store(to, load(to) + sums[q][j]);
+  for (std::size_t j = 0; j < Columns; ++j) {
+    double* to = S + Index(j) * a.size + row;
+    if (kept == height) {
+      for (std::size_t q = 0; q < Registers; ++q, to += lanes)
+        store(to, load<Lanes>(to) + sums[q][j]);
+      continue;
     }
+    double own[Registers * sizeof(Lanes) / sizeof(double)];
+    for (std::size_t q = 0; q < Registers; ++q) store(own + lanes * Index(q), sums[q][j]);
+    for (Index i = height - kept; i < height; ++i) to[i] += own[i];
+  }
 }
 
-template <std::size_t Columns>
+/// Rows from `row` on of Columns columns of S. Where they do not fill a register, the last tile
+/// begins at rows that are done.
+template <class Lanes, std::size_t Registers, std::size_t Columns>
 REIDENT_INLINE void outer_product_strip(const VectorSequence& a, const double* b, Index b_stride,
-                                        Index count, Index first_row, double* S) {
-  const Index rows = a.size;
-  Index i = first_row;
-  for (; i + 8 <= rows; i += 8)
-    outer_product_tile<2, Columns>(a.data + i, a.stride, b, b_stride, count, S + i, rows);
-  if (i + 4 <= rows) {
-    outer_product_tile<1, Columns>(a.data + i, a.stride, b, b_stride, count, S + i, rows);
-    i += 4;
-  }
-  for (; i < rows; ++i) {
-    double sums[Columns] = {};
-    for (Index k = 0; k < count; ++k)
-      for (std::size_t j = 0; j < Columns; ++j)
-        sums[j] += a.data[k * a.stride + i] * b[k * b_stride + Index(j)];
-    for (std::size_t j = 0; j < Columns; ++j) S[Index(j) * rows + i] += sums[j];
+                                        Index count, Index row, double* S) {
+  constexpr Index lanes = sizeof(Lanes) / sizeof(double), height = Index(Registers) * lanes;
+  for (; row + height <= a.size; row += height)
+    outer_product_tile<Lanes, Registers, Columns>(a, b, b_stride, count, row, height, S);
+  const Index left = a.size - row;
+  if constexpr (Registers > 1) {
+    outer_product_strip<Lanes, Registers - 1, Columns>(a, b, b_stride, count, row, S);
+  } else if constexpr (lanes > 1) {
+    if (a.size >= lanes && left > lanes / 4)
+      outer_product_tile<Lanes, 1, Columns>(a, b, b_stride, count, a.size - lanes, left, S);
+    else
+      outer_product_strip<std::conditional_t<lanes == 8, Four, double>, 1, Columns>(a, b, b_stride,
+                                                                                    count, row, S);
   }
 }
+
+/// What add_outer_products() does, with sums in so many registers of Lanes for each column.
+template <class Lanes, std::size_t Registers>
+REIDENT_INLINE void outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
+                                   Triangle triangle, double* S) {
+  for (Index j = 0; j < b.size; j += 6) {
+    const double* columns = b.data + j;
+    double* to = S + j * a.size;
+    const Index row = triangle == Triangle::lower ? j : 0;
+    switch (b.size - j) {
+      case 1:
+        outer_product_strip<Lanes, Registers, 1>(a, columns, b.stride, count, row, to);
+        break;
+      case 2:
+        outer_product_strip<Lanes, Registers, 2>(a, columns, b.stride, count, row, to);
+        break;
+      case 3:
+        outer_product_strip<Lanes, Registers, 3>(a, columns, b.stride, count, row, to);
+        break;
+      case 4:
+        outer_product_strip<Lanes, Registers, 4>(a, columns, b.stride, count, row, to);
+        break;
+      case 5:
+        outer_product_strip<Lanes, Registers, 5>(a, columns, b.stride, count, row, to);
+        break;
+      default:
+        outer_product_strip<Lanes, Registers, 6>(a, columns, b.stride, count, row, to);
+    }
+  }
+}
+
+REIDENT_CLONES
+void outer_products_by_fours(const VectorSequence& a, const VectorSequence& b, Index count,
+                             Triangle triangle, double* S) {
+  outer_products<Four, 2>(a, b, count, triangle, S);
+}
+
+#ifdef REIDENT_AVX512
+REIDENT_AVX512
+void outer_products_by_eights(const VectorSequence& a, const VectorSequence& b, Index count,
+                              Triangle triangle, double* S) {
+  outer_products<Eight, 3>(a, b, count, triangle, S);
+}
+#endif
 
 }  // namespace
 
-REIDENT_CLONES
 void add_outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
                         Triangle triangle, double* S) {
-  const Index rows = a.size;
-  Index j = 0;
-  const auto first_row = [&] { return triangle == Triangle::lower ? j : 0; };
-  const auto column = [&] { return S + j * rows; };
-  for (; j + 6 <= b.size; j += 6)
-    outer_product_strip<6>(a, b.data + j, b.stride, count, first_row(), column());
-  switch (b.size - j) {
-    case 5:
-      return outer_product_strip<5>(a, b.data + j, b.stride, count, first_row(), column());
-    case 4:
-      return outer_product_strip<4>(a, b.data + j, b.stride, count, first_row(), column());
-    case 3:
-      return outer_product_strip<3>(a, b.data + j, b.stride, count, first_row(), column());
-    case 2:
-      return outer_product_strip<2>(a, b.data + j, b.stride, count, first_row(), column());
-    case 1:
-      return outer_product_strip<1>(a, b.data + j, b.stride, count, first_row(), column());
-    default:
-      return;
-  }
+#ifdef REIDENT_AVX512
+  static const bool has_eights = __builtin_cpu_supports("avx512f") != 0;
+  if (has_eights) return outer_products_by_eights(a, b, count, triangle, S);
+#endif
+  outer_products_by_fours(a, b, count, triangle, S);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // for larger ones.
 #include "identification/numerics/kernels.hpp"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,31 @@ TEST(Kernels, RunTheDualFiltersOfAnySize) {
                        states.data(), out.data() + 20 * stride, stride);
       EXPECT_LT((out - expected).norm(), 1e-12 * (1 + expected.norm())) << n << ' ' << inputs;
       EXPECT_LT((states - X).norm(), 1e-12 * (1 + X.norm())) << n << ' ' << inputs;
+    }
+}
+
+/// To the last bit, since the sums have the order of the rows whatever the processor.
+TEST(Kernels, SumOuterProductsOfAnySize) {
+  std::mt19937 random(3);
+  for (Index height = 1; height <= 52; ++height)
+    for (Index width = 1; width <= 13; ++width) {
+      const Matrix a = random_matrix(height, steps, random),
+                   b = random_matrix(width, steps, random);
+      Matrix sums = Matrix::Zero(height, width);
+      for (Index k = 0; k < steps; ++k)
+        for (Index j = 0; j < width; ++j)
+          for (Index i = 0; i < height; ++i) sums(i, j) += a(i, k) * b(j, k);
+      const Matrix before = random_matrix(height, width, random), expected = before + sums;
+      Matrix S = before;
+      add_outer_products({a.data(), height, height}, {b.data(), width, width}, steps,
+                         Triangle::full, S.data());
+      EXPECT_EQ(S, expected) << height << ' ' << width;
+      S = before;
+      add_outer_products({a.data(), height, height}, {b.data(), width, width}, steps,
+                         Triangle::lower, S.data());
+      for (Index j = 0; j < std::min(height, width); ++j)
+        EXPECT_EQ(S.col(j).tail(height - j), expected.col(j).tail(height - j))
+            << height << ' ' << width << ' ' << j;
     }
 }
 
