@@ -101,7 +101,8 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
     const Matrix u = samples.record.u.bottomRows(rows), y = samples.record.y.bottomRows(rows);
     storage::Block& block = samples.block;
     block.rows = rows;
-    if (fault_share(data->plausibility, ticks_of(checked, period)) <= most_faults)
+    if (data->outputs_move &&
+        fault_share(data->plausibility, ticks_of(checked, period)) <= most_faults)
       block.believed = static_cast<double>(rows) / static_cast<double>(length_ / period);
     block.output_mean = list(y.colwise().mean().transpose());
     block.output_square = list(y.cwiseAbs2().colwise().mean().transpose());

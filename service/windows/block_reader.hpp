@@ -49,7 +49,9 @@ class BlockReader {
   const WindowRequest& request() const { return telemetry_.request(); }
 
   /// Reads the block that begins at `begin`, a multiple of length(). Without rows where a parameter
-  /// is not described, or samples are damaged. Throws storage::Error where the file cannot be read.
+  /// is not described, or samples are damaged. Not believed where no output has moved in all that
+  /// is checked: a sensor may be stuck since before. Throws storage::Error where the file cannot be
+  /// read.
   BlockSamples read(const storage::Archive& archive, storage::Time begin);
 
   /// Whether samples in `range` can change what read() gives of the block that begins at `begin`.

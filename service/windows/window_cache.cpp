@@ -104,6 +104,8 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   });
   data.plausibility = checks_.look(reader, data, samples, ticks);
   make_holes(inside(data.plausibility.holes, ticks), ticks);
+  data.outputs_move =
+      samples.rows() > 0 && samples.y != samples.y.row(0).replicate(samples.rows(), 1);
   InputExpressions expressions(request_.inputs, request_.derived);
   std::vector<double> biases;
   if (wanted) {

@@ -280,6 +280,18 @@ TEST(League, AChampionFailsThatErrsMoreThanTheMeanOrTheSimulator) {
   EXPECT_TRUE(Judge(beside.limits()).failure(beside.league()));
 }
 
+TEST(League, AChampionFailsWhereTheOutputStandsStillAndTheModelDoesNot) {
+  Records records(80);
+  records.champion(varying(4));
+  for (Block& block : records.league().blocks) {
+    block.output_mean = {0.1};
+    block.output_square = {0.1 * 0.1 - 1e-18};  // as sums round
+  }
+  const auto failure = Judge(records.limits()).failure(records.league());
+  ASSERT_TRUE(failure);
+  EXPECT_THAT(sentence(*failure), testing::Not(testing::HasSubstr("nan")));
+}
+
 TEST(League, AChampionFailsWhoseGreatErrorsAreFew) {
   // It errs less than the mean on three blocks of five, and more than twice as much in all.
   const auto errors = [](int block) { return Error{0, block % 20 < 12 ? 0.2 : 12}; };

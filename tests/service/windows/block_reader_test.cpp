@@ -46,5 +46,22 @@ TEST_F(Blocks, SayWhichSamplesCanChangeThem) {
   EXPECT_GE(untouched, 20 + 35) << "those before, and those of more than four cycles later";
 }
 
+TEST_F(Blocks, AreNotBelievedWhereTheOutputHasNotMovedInAllThatIsChecked) {
+  storage::Database database = open();
+  storage::Archive archive{database};
+  archive.describe(descriptors());
+  auto frames = telemetry(day, 1800);
+  for (std::size_t k = 600; k < 1200; ++k)
+    frames[k].samples[2].value = frames[600].samples[2].value;
+  archive.append(frames);
+  BlockReader reader("SAT", plant());
+  const auto believed = [&](int second_of_day) {
+    return reader.read(archive, day + second_of_day * second).block.believed;
+  };
+  EXPECT_EQ(believed(570), 1);
+  for (const int stuck : {630, 900, 1155}) EXPECT_EQ(believed(stuck), 0) << stuck;
+  EXPECT_EQ(believed(1500), 1);
+}
+
 }  // namespace
 }  // namespace reident::test::block_reader_test
