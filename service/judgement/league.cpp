@@ -206,15 +206,13 @@ std::optional<Reason> Judge::failure(const League& league) {
   if (!(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;
     Comparison with_mean;
-    for_each_score(
-        league, *league.champion, since_, 0,
-        [&](std::size_t i, const Block& block, const BlockScore& score) {
-          std::vector<double> square = block.output_square;
-          for (std::size_t q = 0; q < square.size(); ++q)
-            square[q] = std::max(
-                0.0, square[q] + mean[Index(q)] * (mean[Index(q)] - 2 * block.output_mean[q]));
-          with_mean.add(i, block, score, square);
-        });
+    for_each_score(league, *league.champion, since_, 0,
+                   [&](std::size_t i, const Block& block, const BlockScore& score) {
+                     std::vector<double> square = block.output_square;
+                     for (std::size_t q = 0; q < square.size(); ++q)
+                       square[q] += mean[Index(q)] * (mean[Index(q)] - 2 * block.output_mean[q]);
+                     with_mean.add(i, block, score, square);
+                   });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;
   }
   return fails_against("the simulator's own model", compared_.with_simulator);

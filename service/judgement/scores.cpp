@@ -74,7 +74,7 @@ void Sums::add(const Block& block, const std::vector<double>& square, double wei
 }
 
 double Sums::mrse_percent() const {
-  return error.size() == 0 ? 0 : 100 * (error / y_square).sqrt().mean();
+  return error.size() == 0 ? 0 : 100 * (error > 0).select(error / y_square, 0.0).sqrt().mean();
 }
 
 double Sums::fit_percent() const {

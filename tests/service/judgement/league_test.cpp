@@ -284,8 +284,8 @@ TEST(League, AChampionFailsWhereTheOutputStandsStillAndTheModelDoesNot) {
   Records records(80);
   records.champion(varying(4));
   for (Block& block : records.league().blocks) {
-    block.output_mean = {0.1};
-    block.output_square = {0.1 * 0.1 - 1e-18};  // as sums round
+    block.output_mean = {0.1};  // and a mean square as sums round
+    block.output_square = {0.1 * 0.1 - 1e-18};
   }
   const auto failure = Judge(records.limits()).failure(records.league());
   ASSERT_TRUE(failure);
