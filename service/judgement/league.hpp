@@ -47,8 +47,8 @@ struct Finding {
   double mean_score = 0;           // 1: it errs nothing beside the champion; -1: the reverse
   double lower_score = 0;          // lower end of the confidence sequence
   double uncovered_share = 0;      // of the blocks since `changed`, in regimes that it has not met
-  double mean_without_offset = 0;  // without what an offset explains, of the likeliest sensor
-  double wealth_without_offset = 0;  // log of the wealth, likewise
+  double wealth_without_offset = 0;  // log, without what an offset of the likeliest sensor explains
+  double mrse_without_offset = 0;    // the champion's [%], likewise
   double mrse_percent = 0;           // on the compared blocks
   double fit_percent = 0;            // the worst output's
   double champion_mrse_percent = 0;

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "service/judgement/coverage.hpp"
 #include "service/judgement/gate.hpp"
@@ -19,24 +18,21 @@ using identification::Index;
 using identification::log_wealth;
 using identification::lower_mean;
 using identification::ScoreSeries;
-using identification::Vector;
 using storage::Block;
 using storage::BlockScore;
 using storage::Time;
 using Code = ReasonCode;
 
-/// The score of an error that is less by the margin.
-double margin_of(const EquipmentConfig& limits) {
-  const double rest = 1 - limits.margin_percent / 100;
-  return (1 - rest * rest) / (1 + rest * rest);
+double less_by_margin(double mrse_percent, const EquipmentConfig& limits) {
+  return mrse_percent * (1 - limits.margin_percent / 100);
 }
 
-/// The scores of a member against the champion without what an offset explains of its error in each
-/// last cycle.
-ScoreSeries without(const OffsetFit& offset, const Standard& standard, const Member& member,
-                    const Comparison& compared) {
+/// The member compared with the champion without what an offset explains of its error in each last
+/// cycle.
+Comparison without(const OffsetFit& offset, const Standard& standard, const Member& member,
+                   const Comparison& compared) {
   const League& league = standard.league;
-  Scores scores;
+  Comparison result;
   for (const std::size_t i : compared.blocks) {
     OffsetFit fit = offset;
     for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
@@ -46,9 +42,9 @@ ScoreSeries without(const OffsetFit& offset, const Standard& standard, const Mem
     const Time begin = league.blocks[i].range.begin;
     BlockScore rest = *find(*league.champion, begin);
     rest.square = fit.rest(rest);
-    scores.add(squares_of(*find(member, begin), rest));
+    result.add(i, league.blocks[i], *find(member, begin), rest);
   }
-  return series(scores.values(), standard.assumed);
+  return result;
 }
 
 /// The past of the inputs' sensor at `place` is the champion's record before `since`; where that is
@@ -73,9 +69,10 @@ bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regim
   for (std::size_t i = 0; i < compared.blocks.size(); ++i)
     losses[regimes[compared.blocks[i]]].push_back(-compared.scores.values()[i]);
   const double threshold = std::log(static_cast<double>(losses.size()) / error_probability(limits));
+  const double rest = less_by_margin(1, limits), least = (1 - rest * rest) / (1 + rest * rest);
   return std::any_of(losses.begin(), losses.end(), [&](const auto& of_regime) {
     const ScoreSeries loss = series(of_regime.second, assumed);
-    return lower_mean(loss, dependence(loss), threshold) > margin_of(limits);
+    return lower_mean(loss, dependence(loss), threshold) > least;
   });
 }
 
@@ -105,16 +102,20 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
   std::string suspects;
   finding.wealth_without_offset = finding.log_wealth;
-  finding.mean_without_offset = finding.mean_score;
+  finding.mrse_without_offset = finding.champion_mrse_percent;
   const auto suspect = [&](const std::string& sensor, const OffsetFit& offset) {
-    const ScoreSeries scores = without(offset, standard, member, compared);
+    const Comparison rest = without(offset, standard, member, compared);
+    const ScoreSeries scores = series(rest.scores.values(), standard.assumed);
     const double wealth = log_wealth(scores, dependence(scores), 0);
-    const double mean = scores.scores.mean();
-    if (!(wealth > finding.log_threshold && mean > margin_of(standard.limits)))
+    const double error = rest.other.mrse_percent();
+    // Half of the gain, as a logarithm: what the offset explains may be lost, and a version that
+    // has learnt it errs by it once the bias ends.
+    if (!(wealth > finding.log_threshold &&
+          error * error > finding.champion_mrse_percent * finding.mrse_percent))
       suspects += (suspects.empty() ? "" : ", ") + sensor;
     if (wealth > finding.wealth_without_offset) return;
     finding.wealth_without_offset = wealth;
-    finding.mean_without_offset = mean;
+    finding.mrse_without_offset = error;
   };
   const auto is_unbound = [&](const std::string& sensor) {
     return std::ranges::count(league.unbound, sensor) > 0;
@@ -141,8 +142,8 @@ std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
 }  // namespace
 
 ScoreSeries series(const std::vector<double>& scores, double assumed) {
-  return {Eigen::Map<const Vector>(scores.data(), std::ssize(scores)), largest_score,
-          blocks_of_cycle, assumed};
+  return {Eigen::Map<const identification::Vector>(scores.data(), std::ssize(scores)),
+          largest_score, blocks_of_cycle, assumed};
 }
 
 double error_probability(const EquipmentConfig& limits) {
@@ -193,7 +194,7 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
     const double rival =
         is_known ? finding.baseline_mrse_percent : limits.baseline_mrse_percent.value_or(INFINITY);
     const bool is_better = is_known ? finding.log_wealth > finding.log_threshold &&
-                                          finding.mean_score > margin_of(limits)
+                                          error < less_by_margin(rival, limits)
                                     : error < rival;
     if (!is_better) return because<Code::not_better_than_simulator>(error, rival);
     return std::nullopt;
@@ -231,7 +232,7 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
     if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
       return reason;
     if (!(finding.log_wealth > finding.log_threshold)) return not_better();
-    if (!(finding.mean_score > margin_of(limits)))
+    if (!(finding.mrse_percent < less_by_margin(finding.champion_mrse_percent, limits)))
       return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,
                                           finding.champion_mrse_percent, finding.blocks);
     finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);

@@ -195,8 +195,8 @@ struct Glossary {
        "The version is better than the champion, and approval = \"by_hand\" asks for an operator.",
        "'reident approve' or 'reject'; 'reident why' has its record."},
       {"within_margin", "better by too little",
-       "The version is better than the champion by less than the configured margin. The champion "
-       "stays.",
+       "The version is better on most blocks, but its error over all of them is not less than the "
+       "champion's by the configured margin. The champion stays.",
        ""},
       {"worse_in_regime", "worse in an operating regime",
        "The version is worse than the champion, with confidence, in an operating regime that "

@@ -174,7 +174,7 @@ struct Catalogue {
        "of "
        "{log_threshold:.2f}."},
       {within_margin, "within_margin", none,
-       "Better than champion {champion:d} by less than the margin of {margin_percent:g} %: MRSE "
+       "Does not err less than champion {champion:d} by the margin of {margin_percent:g} %: MRSE "
        "{mrse_percent:.3f} % and {champion_mrse_percent:.3f} % on {blocks:d} blocks."},
       {not_covered, "not_covered", none,
        "Cannot replace champion {champion:d} yet: it has not met the operating regimes of "

@@ -35,15 +35,14 @@ Place place_of(std::string_view obstacle) {
 }
 
 std::string offset(const Finding& finding) {
-  return fmt::format("{:.2f}, {:.3f}", finding.wealth_without_offset, finding.mean_without_offset);
+  return fmt::format("{:.2f}; champion's MRSE {:.3g} %", finding.wealth_without_offset,
+                     finding.mrse_without_offset);
 }
 
 }  // namespace
 
 std::vector<Condition> conditions_of(const Finding& finding, std::string_view obstacle,
                                      const EquipmentConfig& limits) {
-  const double rest = 1 - limits.margin_percent / 100;
-  const double least_score = (1 - rest * rest) / (1 + rest * rest);
   std::vector<Condition> conditions = {
       {"R4",
        fmt::format("MRSE at most {:g} %, fit above 0 %", limits.max_mrse_percent),
@@ -54,10 +53,9 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("{:.2f} on {} blocks", finding.log_wealth, finding.blocks),
        {}},
       {"R1",
-       fmt::format("mean score above {:.3f} ({:g} % less error)", least_score,
-                   limits.margin_percent),
-       fmt::format("{:.3f}; MRSE {:.3g} % against {:.3g} %", finding.mean_score,
-                   finding.mrse_percent, finding.champion_mrse_percent),
+       fmt::format("MRSE less by {:g} %", limits.margin_percent),
+       fmt::format("{:.3g} % against {:.3g} %", finding.mrse_percent,
+                   finding.champion_mrse_percent),
        {}},
       {"R2",
        "sure gain outweighs regimes that it has not met",
@@ -66,8 +64,8 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        {}},
       {"R2", "worse in no regime, with confidence; less error over all", "", {}},
       {"R3",
-       fmt::format("without the champion's offset, above {:.2f} and {:.3f} too",
-                   finding.log_threshold, least_score),
+       fmt::format("without the champion's offset, above {:.2f} too, and half of the gain",
+                   finding.log_threshold),
        limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\"" : offset(finding),
        {}},
       {"R5", "policy: interval, hold, approval", "", {}}};

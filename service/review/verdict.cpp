@@ -24,8 +24,8 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("mean_score", finding.mean_score);
   read("lower_score", finding.lower_score);
   read("uncovered_share", finding.uncovered_share);
-  read("mean_without_offset", finding.mean_without_offset);
   read("log_wealth_without_offset", finding.wealth_without_offset);
+  read("champion_mrse_without_offset_percent", finding.mrse_without_offset);
   read("mrse_percent", finding.mrse_percent);
   read("champion_mrse_percent", finding.champion_mrse_percent);
   read("fit_percent", finding.fit_percent);

@@ -97,6 +97,19 @@ TEST(Bias, VersionIsNoBiasOfASensorThatARelationBinds) {
   EXPECT_EQ(records.obstacle(), Code::bias_unverified);
 }
 
+TEST(Bias, VersionThatIsBetterByAConstantMostOfAllWaits) {
+  // Of the gain, log(10), a constant of the champion's errors explains log(5).
+  Records records(200);
+  records.champion([](int block) {
+           return block < 100 ? Error{0, 0.01} : Error{1, 0.05};
+         })
+      .challenger(varying(0.01), 100)
+      .unbound();
+  EXPECT_EQ(records.obstacle(), Code::bias_unverified);
+  const Finding found = records.findings().at(0);
+  EXPECT_GT(found.wealth_without_offset, found.log_threshold);
+}
+
 TEST(Bias, VersionThatIsBetterWithoutTheConstantTooIsNoBias) {
   EXPECT_EQ(Records(200)
                 .champion([](int block) {

@@ -72,7 +72,7 @@ const Example of_a_member[] = {
      "Not shown to be better than champion 3: MRSE 5.000 % and 5.500 % on 40 blocks, log of the "
      "evidence 1.23 of 5.68."},
     {because<Code::within_margin>(3, 15.0, 5.0, 5.5, 40),
-     "Better than champion 3 by less than the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 "
+     "Does not err less than champion 3 by the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 "
      "blocks."},
     {because<Code::not_covered>(3, 24.6),
      "Cannot replace champion 3 yet: it has not met the operating regimes of 25 % of the time "
@@ -117,9 +117,8 @@ TEST(Reasons, FollowOneAnotherInTextAndJson) {
   const std::vector<Reason> reasons = {because<Code::league_full>(12),
                                        because<Code::within_margin>(3, 15.0, 5.0, 5.5, 40)};
   EXPECT_EQ(sentences(reasons),
-            "The league has 12 challengers that score better or wait for an operator. Better than "
-            "champion 3 by "
-            "less than the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 blocks.");
+            "The league has 12 challengers that score better or wait for an operator. Does not err "
+            "less than champion 3 by the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 blocks.");
   EXPECT_EQ(to_json(reasons).dump(),
             R"([{"code":"league_full","members":12},)"
             R"({"code":"within_margin","champion":3,"margin_percent":15.0,"mrse_percent":5.0,)"

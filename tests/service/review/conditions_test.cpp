@@ -14,10 +14,10 @@ TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
   };
   EXPECT_EQ(bias("").holds, true);
   EXPECT_EQ(bias("").found, "not asked: relations bind the sensors");
-  EXPECT_EQ(bias("bias_unverified").found, "0.00, 0.000");
+  EXPECT_EQ(bias("bias_unverified").found, "0.00; champion's MRSE 0 %");
   finding.wealth_without_offset = 7.5;
-  finding.mean_without_offset = 0.25;
-  EXPECT_EQ(bias("").found, "7.50, 0.250");
+  finding.mrse_without_offset = 2.5;
+  EXPECT_EQ(bias("").found, "7.50; champion's MRSE 2.5 %");
   EXPECT_EQ(bias("not_better").holds, std::nullopt);
 }
 
