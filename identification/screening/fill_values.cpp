@@ -15,6 +15,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Times the greatest magnitude of the others: where they have another sign, and for any value. An
 // equipment that switches on may well draw a hundred times the noise of its current before.
 constexpr double far = 10, absurd = 1e4;
+// How far outside of the others a number of nines lies that has another sign, of their range.
+constexpr double least_gap = 0.05;
 // A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all,
 // and the share of them at which another channel may jump by chance.
 constexpr Index least_scattered = 3;
@@ -49,7 +51,9 @@ bool stands_for_none(double value, Index count, double low, double high) {
   const bool is_repeated = count > 1;
   const double least = other_sign && is_repeated ? far : absurd;
   if (greatest > 0 && std::abs(value) >= least * greatest) return true;
-  return gap > high - low && gap > 0 && high > low &&
+  // None lies on the way to a number of another sign that returns to the digit.
+  const double away = other_sign && count >= least_scattered ? least_gap : 1;
+  return gap > away * (high - low) && gap > 0 && high > low &&
          (is_of_nines(std::abs(value)) || is_end_of_integers(value));
 }
 

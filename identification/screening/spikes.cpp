@@ -81,23 +81,24 @@ bool step_explains(const Channel& self, const Channel& other, const Excursion& s
   return quantile(moved, 0.75) >= explained_share * height;
 }
 
-}  // namespace
-
-std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t self) {
-  const Channel& channel = channels[self];
-  std::vector<Excursion> spikes = excursions_of(channel);
-  if (spikes.empty()) return {};
-  std::vector<Plateau> found;
-  for (const Excursion& spike : spikes) found.push_back(spike.plateau);
-  const Witnesses witnesses = witnesses_of(channels, self, found);
-  const std::vector<Plateau> plateaus = channel.plateaus();
-  const double longest = 2 * median_size(plateaus);
-  std::erase_if(spikes, [&](const Excursion& one) {
-    const auto rows = double(one.plateau.size());
-    return rows > (witnesses.is_lost(one.plateau) ? std::max(longest, longest_lost) : longest);
+/// Moves those to the end that are further outside of the other samples than these are apart, and
+/// returns where they begin.
+std::vector<Excursion>::iterator absurd_last(const Channel& channel,
+                                             std::vector<Excursion>& excursions) {
+  Vector others = channel.values;
+  for (const Excursion& one : excursions) bridge(others, one.plateau);
+  const double low = others.minCoeff(), high = others.maxCoeff();
+  return std::stable_partition(excursions.begin(), excursions.end(), [&](const Excursion& one) {
+    return high == low || std::max(low - one.plateau.value, one.plateau.value - high) <= high - low;
   });
+}
+
+/// Those of the excursions that nothing explains, where they are few among so many plateaus.
+std::vector<Excursion> faults_among(const std::vector<Excursion>& spikes,
+                                    const Witnesses& witnesses, std::size_t plateaus) {
   if (spikes.empty()) return {};
-  const double share = double(spikes.size()) / double(plateaus.size());
+  const Channel& channel = witnesses.channels[witnesses.self];
+  const double share = double(spikes.size()) / double(plateaus);
   if (share > (are_irregular(spikes) ? most_irregular : most_spikes) &&
       !are_one_absurd_value(channel, spikes))
     return {};
@@ -105,9 +106,9 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
   std::vector<Index> beside;  // where those of them begin at which another channel jumps otherwise
   for (const Excursion& spike : spikes) {
     bool jumps = false, explained = false;
-    for (std::size_t c = 0; c < channels.size() && !explained; ++c) {
+    for (std::size_t c = 0; c < witnesses.channels.size() && !explained; ++c) {
       const Channel& other = witnesses.channels[c];
-      if (c == self || !(other.range() > 0) || !witnesses.saw(c, spike.plateau)) continue;
+      if (c == witnesses.self || !(other.range() > 0) || !witnesses.saw(c, spike.plateau)) continue;
       const Jump jump = jump_of(other, spike.plateau);
       if (!(jump.size > other.least_jump)) continue;
       jumps = true;
@@ -130,8 +131,37 @@ std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t
       return is_alone(spike) || std::abs(spike.height) <= 2 * tallest;
     });
   }
+  return unexplained;
+}
+
+}  // namespace
+
+std::vector<Plateau> spikes_of(const std::vector<Channel>& channels, std::size_t self) {
+  const Channel& channel = channels[self];
+  std::vector<Excursion> spikes = excursions_of(channel);
+  if (spikes.empty()) return {};
+  std::vector<Plateau> found;
+  for (const Excursion& spike : spikes) found.push_back(spike.plateau);
+  Witnesses witnesses = witnesses_of(channels, self, found);
+  const std::vector<Plateau> plateaus = channel.plateaus();
+  const double longest = 2 * median_size(plateaus);
+  std::erase_if(spikes, [&](const Excursion& one) {
+    const auto rows = double(one.plateau.size());
+    return rows > (witnesses.is_lost(one.plateau) ? std::max(longest, longest_lost) : longest);
+  });
+  const auto absurd = absurd_last(channel, spikes);
+  const std::size_t count = plateaus.size();
+  auto faults = faults_among({absurd, spikes.end()}, witnesses, count);
+  Channel& rest = witnesses.channels[self];  // says what the equipment does without these
+  for (const Excursion& fault : faults) bridge(rest.values, fault.plateau);
+  rest.low = rest.values.minCoeff();
+  rest.high = rest.values.maxCoeff();
+  const auto usual = faults_among({spikes.begin(), absurd}, witnesses, count);
+  faults.insert(faults.end(), usual.begin(), usual.end());
   found.clear();
-  for (const Excursion& spike : unexplained) found.push_back(spike.plateau);
+  for (const Excursion& fault : faults) found.push_back(fault.plateau);
+  std::sort(found.begin(), found.end(),
+            [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });
   return found;
 }
 

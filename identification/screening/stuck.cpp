@@ -15,6 +15,8 @@ constexpr std::size_t most_stuck = 20;  // plateaus of one channel
 constexpr double repeated_share = 1.0 / 3;
 /// At the end of its range a sensor has nothing to show: its cause is absent.
 constexpr double end_share = 0.02;
+/// Rows beyond an end, of those that rest at it: a spike there makes no new end.
+constexpr double beyond_share = 0.1;
 /// What another channel moves meanwhile, as a share of its range; or as usual over as many rows.
 constexpr double moving_share = 0.1;
 constexpr Index windows = 50;
@@ -60,21 +62,25 @@ bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& 
   });
 }
 
-/// Whether the channel rests at an end of its range, and does not vary there at other times.
+/// Whether the channel rests at an end of its range, with hardly a row beyond, and does not vary
+/// there at other times.
 bool rests_at_end_of_range(const Channel& channel, const std::vector<Plateau>& plateaus,
                            const Plateau& plateau) {
   const double near = end_share * channel.range();
-  const bool is_low = plateau.value <= channel.low + near;
-  if (!is_low && plateau.value < channel.high - near) return false;
-  Index rows = 0, longest = 0;
-  for (const Plateau& other : plateaus) {
-    const bool is_near =
-        is_low ? other.value <= channel.low + near : other.value >= channel.high - near;
-    if (!is_near || (other.begin == plateau.begin && other.segment == plateau.segment)) continue;
-    rows += other.size();
-    longest = std::max(longest, other.size());
-  }
-  return rows < plateau.size() || double(longest) >= repeated_share * double(plateau.size());
+  const auto rests_at = [&](double outwards) {  // 1: the high end
+    Index beyond = 0, rows = 0, longest = 0;
+    for (const Plateau& other : plateaus) {
+      if (other.begin == plateau.begin && other.segment == plateau.segment) continue;
+      const double further = outwards * (other.value - plateau.value);
+      if (further > near) beyond += other.size();
+      if (std::abs(further) > near) continue;
+      rows += other.size();
+      longest = std::max(longest, other.size());
+    }
+    return double(beyond) <= beyond_share * double(plateau.size()) &&
+           (rows < plateau.size() || double(longest) >= repeated_share * double(plateau.size()));
+  };
+  return rests_at(-1) || rests_at(1);
 }
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel

@@ -37,8 +37,12 @@
 #                                         and with the build of another commit.
 #                                         The last line is one JSON object
 #   tests/bench/run.sh screening FILE.csv --input NAME... --output NAME... [--time NAME] [--window ROWS]
+#                                [--faults N] [--other PROGRAM]
 #                                         what the screens for sensor faults leave out of a file's
-#                                         telemetry, as one JSON object
+#                                         telemetry, and how many of N faults of each kind they find
+#                                         that are put into each window; compared with the same
+#                                         program of another commit.
+#                                         The last line is one JSON object
 #   tests/bench/run.sh simulator          a version's way from the service to a step in another
 #                                         process compared with ddsperf's round trip, a step
 #                                         compared with the bare products, what a step allocates, a
@@ -144,6 +148,7 @@ case $what in
     ;;
   screening)
     [ $# -gt 0 ] || usage
+    arguments=(build/release/tests/bench/screening/reident_screening_bench "$@")
     targets=(reident_screening_bench)
     ;;
   simulator)
@@ -185,7 +190,4 @@ if [ "$what" = archive ] &&
 fi
 if [ "$what" = web ]; then npm ci --prefix tests/e2e/browser --no-audit --no-fund >/dev/null; fi
 cmake --build --preset release --target "${targets[@]}" >/dev/null
-if [ "$what" = screening ]; then
-  exec build/release/tests/bench/screening/reident_screening_bench "$@"
-fi
 exec python3 "tests/bench/$what.py" "${arguments[@]}"

@@ -208,6 +208,25 @@ TEST(Screening, LeavesPulsesOfALoadThatIsQuietOtherwise) {
   EXPECT_LE(left_out, 5U);
 }
 
+TEST(Screening, FindsAnImpossibleValueAmongPulsesThatTheOutputAnswers) {
+  std::size_t found = 0, left_out = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Bus bus(seed, 1'500);
+    const Rows pulses = bus.some_rows(5);
+    for (const Index row : pulses) bus.load(row) += 4 + 3 * bus.uniform();
+    bus.answer(0.95, 0.005);
+    Index wrong = 700;
+    while (std::abs(*std::lower_bound(pulses.begin(), pulses.end() - 1, wrong - 3) - wrong) < 4)
+      ++wrong;
+    bus.load(wrong) += 60;
+    const Rows faults = bus.left_out();
+    found += common(faults, {wrong});
+    left_out += common(faults, pulses);
+  }
+  EXPECT_GE(found, 19U);  // one lies on a step of the load
+  EXPECT_LE(left_out, 5U);
+}
+
 TEST(Screening, FindsFewPulsesThatNoOutputAnswers) {
   for (const double pole : {0.7, 0.95}) {
     std::size_t found = 0, all = 0, honest = 0;

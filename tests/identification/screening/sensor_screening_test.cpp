@@ -367,6 +367,36 @@ TEST(Screening, LeavesAPanelThatHasNothingToShowInEclipse) {
   EXPECT_TRUE(telemetry.faults().empty());
 }
 
+TEST(Screening, LeavesTheOneEclipseOfAPanelWhereOtherRowsAreBelowIt) {
+  for (const Index rows : {1, 100}) {
+    Telemetry telemetry(1, 6'000);
+    std::mt19937 random(2);
+    std::normal_distribution<double> noise;
+    for (Index t = 1'000; t < 1'000 + rows; ++t)
+      telemetry.channel(Telemetry::array)(t) = -20 + 5 * noise(random);
+    for (const SensorFault& fault : telemetry.faults()) {
+      EXPECT_NE(fault.kind, SensorFaultKind::stuck) << rows;
+      EXPECT_EQ(fault.channel, Telemetry::array) << rows;
+    }
+  }
+}
+
+TEST(Screening, FindsANumberOfNinesThatNoOtherValueLiesNear) {
+  // The currents of a panel from 0 to 1300 mA, each sent for three rows.
+  for (const double share : {0.01, 0.1, 0.5}) {
+    Telemetry telemetry;
+    auto values = telemetry.channel(Telemetry::array);
+    std::mt19937 random(3);
+    std::bernoulli_distribution is_filled(share);
+    for (Index t = 0; t < 30'000; ++t) values(t) = t % 3 == 0 ? 100 * values(t) : values(t - t % 3);
+    Index filled = 0;
+    for (Index t = 0; t < 30'000; ++t)
+      if (is_filled(random)) values(t) = -999, ++filled;
+    EXPECT_EQ(size(ticks_of(telemetry.faults(), SensorFaultKind::fill, Telemetry::array)), filled);
+    EXPECT_TRUE(ticks_of(telemetry.faults(), SensorFaultKind::stuck, Telemetry::array).empty());
+  }
+}
+
 TEST(Screening, LooksAtAnalogChannelsAlone) {
   Telemetry telemetry;
   telemetry.channel(Telemetry::load)(1'000) += 9;
