@@ -40,7 +40,7 @@ class Operators(EndToEnd):
     def champions(self, count):
         """Flies so many plants, each unlike the one before; returns the versions approved."""
         for i in range(count):
-            self.replay_rows(f"plant-{i}", count=1300, first=1300 * i, gain=1.0 + i)
+            self.replay_rows(f"plant-{i}", count=1900, first=1900 * i, gain=1.0 + i)
         approved = [version for version, in self.query(
             "SELECT version FROM decision WHERE kind = 'approve' ORDER BY id")]
         self.assertGreaterEqual(len(approved), count, self.query("SELECT * FROM history"))
@@ -86,7 +86,7 @@ class Operators(EndToEnd):
                       self.refused("withdraw", "PLANT", last, "--reason", "again"))
 
         self.done("hold", "PLANT", "--reason", "training")
-        self.replay_rows("held", count=1300, first=1300 * 3, gain=5.0)
+        self.replay_rows("held", count=1900, first=1900 * 3, gain=5.0)
         self.assertEqual(self.champion(), before)
         self.assertEqual(self.runs(simulator)[-1], before)
         self.assertIn("is held already by Ana", self.refused("hold", "PLANT", actor="Bo"))
@@ -94,7 +94,7 @@ class Operators(EndToEnd):
         status, text = self.reident("release", "PLANT", "--actor", "Bo", *self.endpoint())
         self.assertEqual(status, 0, text)
         self.assertIn("it was held by Ana", text)
-        self.replay_rows("released", count=1300, first=1300 * 4, gain=5.0)
+        self.replay_rows("released", count=1900, first=1900 * 4, gain=5.0)
         self.assertGreater(self.champion(), last)
         wait_until(lambda: self.runs(simulator)[-1] == self.champion(), "the next one runs")
 

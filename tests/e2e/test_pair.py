@@ -62,7 +62,7 @@ class Pair(PairOfServices, test_web.WebCase):
 
         self.sides[2].kill()
         wait_until(lambda: self.leads(1), "the standby leads")
-        self.replay_flight("second", 2, *station, count=1300, first=1300, gain=2.0)
+        self.replay_flight("second", 2, *station, count=1900, first=1300, gain=2.0)
         second = self.wait_for_champion(1, [simulator], above=first)
         self.assertEqual(second % 2, 1)
 
