@@ -1,5 +1,5 @@
 // For the few functions whose time counts: compiled for the baseline and for AVX2, and chosen by
-// the loader; the most frequent one for AVX-512 too. All give the same bits, since no sum is
+// the loader; the two most frequent ones for AVX-512 too. All give the same bits, since no sum is
 // reordered and none is fused (METHOD.md, "Speed"). Private to .cpp files: it silences a warning.
 #pragma once
 

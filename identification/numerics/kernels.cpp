@@ -10,6 +10,13 @@ namespace reident::identification {
 
 namespace {
 
+#ifdef REIDENT_AVX512
+bool has_eights() {
+  static const bool found = __builtin_cpu_supports("avx512f") != 0;
+  return found;
+}
+#endif
+
 /// Rows from `row` on of Columns columns of S, as many as Registers registers of Lanes have: their
 /// sums stay there for all k. Of these rows only the last `kept` ones are added.
 template <class Lanes, std::size_t Registers, std::size_t Columns>
@@ -105,31 +112,32 @@ void outer_products_by_eights(const VectorSequence& a, const VectorSequence& b, 
 void add_outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
                         Triangle triangle, double* S) {
 #ifdef REIDENT_AVX512
-  static const bool has_eights = __builtin_cpu_supports("avx512f") != 0;
-  if (has_eights) return outer_products_by_eights(a, b, count, triangle, S);
+  if (has_eights()) return outer_products_by_eights(a, b, count, triangle, S);
 #endif
   outer_products_by_fours(a, b, count, triangle, S);
 }
 
 namespace {
 
-/// Four columns of the Cholesky factor less what the columns before them explain, on rows
-/// [i, i + 4 Quads): A(i.., j..j+3) -= sum_{k<j} L(i.., k) L(j..j+3, k)'.
-template <std::size_t Quads>
+/// Four columns of the Cholesky factor less what the columns before them explain, on as many rows
+/// from i on as Registers registers of Lanes have: A(i.., j..j+3) -= sum_{k<j} L(i.., k)
+/// L(j..j+3, k)'.
+template <class Lanes, std::size_t Registers>
 REIDENT_INLINE void cholesky_tile(double* A, Index size, Index i, Index j) {
-  Four rest[Quads][4];
-  for (std::size_t q = 0; q < Quads; ++q)
+  constexpr Index lanes = sizeof(Lanes) / sizeof(double);
+  Lanes rest[Registers][4];
+  for (std::size_t q = 0; q < Registers; ++q)
     for (std::size_t c = 0; c < 4; ++c)
-      rest[q][c] = load(A + (j + Index(c)) * size + i + 4 * Index(q));
+      rest[q][c] = load<Lanes>(A + (j + Index(c)) * size + i + lanes * Index(q));
   const double* column = A;
   for (Index k = 0; k < j; ++k, column += size)
-    for (std::size_t q = 0; q < Quads; ++q) {
-      const Four left = load(column + i + 4 * Index(q));
+    for (std::size_t q = 0; q < Registers; ++q) {
+      const auto left = load<Lanes>(column + i + lanes * Index(q));
       for (std::size_t c = 0; c < 4; ++c) rest[q][c] -= left * column[j + Index(c)];
     }
-  for (std::size_t q = 0; q < Quads; ++q)
+  for (std::size_t q = 0; q < Registers; ++q)
     for (std::size_t c = 0; c < 4; ++c)
-      store(A + (j + Index(c)) * size + i + 4 * Index(q), rest[q][c]);
+      store(A + (j + Index(c)) * size + i + lanes * Index(q), rest[q][c]);
 }
 
 /// Does what cholesky_tile() does for `columns` columns, one entry at a time.
@@ -141,19 +149,17 @@ REIDENT_INLINE void cholesky_entries(double* A, Index size, Index i, Index j, In
   }
 }
 
-}  // namespace
-
-REIDENT_CLONES
-bool cholesky(double* A, Index size) {
+/// What cholesky() does.
+template <class Lanes>
+REIDENT_INLINE bool cholesky_by(double* A, Index size) {
+  constexpr Index lanes = sizeof(Lanes) / sizeof(double);
   for (Index j = 0; j < size; j += 4) {
     const Index columns = size - j < 4 ? size - j : 4;
     Index i = j;
     if (columns == 4) {
-      for (; i + 8 <= size; i += 8) cholesky_tile<2>(A, size, i, j);
-      if (i + 4 <= size) {
-        cholesky_tile<1>(A, size, i, j);
-        i += 4;
-      }
+      for (; i + 2 * lanes <= size; i += 2 * lanes) cholesky_tile<Lanes, 2>(A, size, i, j);
+      for (; i + lanes <= size; i += lanes) cholesky_tile<Lanes, 1>(A, size, i, j);
+      for (; i + 4 <= size; i += 4) cholesky_tile<Four, 1>(A, size, i, j);
     }
     for (; i < size; ++i) cholesky_entries(A, size, i, j, columns);
     for (Index c = j; c < j + columns; ++c) {
@@ -169,6 +175,27 @@ bool cholesky(double* A, Index size) {
     }
   }
   return true;
+}
+
+REIDENT_CLONES
+bool cholesky_by_fours(double* A, Index size) {
+  return cholesky_by<Four>(A, size);
+}
+
+#ifdef REIDENT_AVX512
+REIDENT_AVX512
+bool cholesky_by_eights(double* A, Index size) {
+  return cholesky_by<Eight>(A, size);
+}
+#endif
+
+}  // namespace
+
+bool cholesky(double* A, Index size) {
+#ifdef REIDENT_AVX512
+  if (has_eights()) return cholesky_by_eights(A, size);
+#endif
+  return cholesky_by_fours(A, size);
 }
 
 namespace {
