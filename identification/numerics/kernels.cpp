@@ -63,34 +63,16 @@ REIDENT_INLINE void outer_product_strip(const VectorSequence& a, const double* b
   }
 }
 
-/// What add_outer_products() does, with sums in so many registers of Lanes for each column.
-template <class Lanes, std::size_t Registers>
+/// What add_outer_products() does to the columns of S from j on, Columns at a time and then fewer,
+/// with sums in so many registers of Lanes for each.
+template <class Lanes, std::size_t Registers, std::size_t Columns = 6>
 REIDENT_INLINE void outer_products(const VectorSequence& a, const VectorSequence& b, Index count,
-                                   Triangle triangle, double* S) {
-  for (Index j = 0; j < b.size; j += 6) {
-    const double* columns = b.data + j;
-    double* to = S + j * a.size;
-    const Index row = triangle == Triangle::lower ? j : 0;
-    switch (b.size - j) {
-      case 1:
-        outer_product_strip<Lanes, Registers, 1>(a, columns, b.stride, count, row, to);
-        break;
-      case 2:
-        outer_product_strip<Lanes, Registers, 2>(a, columns, b.stride, count, row, to);
-        break;
-      case 3:
-        outer_product_strip<Lanes, Registers, 3>(a, columns, b.stride, count, row, to);
-        break;
-      case 4:
-        outer_product_strip<Lanes, Registers, 4>(a, columns, b.stride, count, row, to);
-        break;
-      case 5:
-        outer_product_strip<Lanes, Registers, 5>(a, columns, b.stride, count, row, to);
-        break;
-      default:
-        outer_product_strip<Lanes, Registers, 6>(a, columns, b.stride, count, row, to);
-    }
-  }
+                                   Triangle triangle, double* S, Index j = 0) {
+  for (; j + Index(Columns) <= b.size; j += Index(Columns))
+    outer_product_strip<Lanes, Registers, Columns>(
+        a, b.data + j, b.stride, count, triangle == Triangle::lower ? j : 0, S + j * a.size);
+  if constexpr (Columns > 1)
+    outer_products<Lanes, Registers, Columns - 1>(a, b, count, triangle, S, j);
 }
 
 REIDENT_CLONES

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"

@@ -86,8 +86,7 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
     return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
   if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
-  // A few blocks with great errors make the bet no poorer, and a regime from before the window is
-  // in no bet: yet the errors as a whole may be larger.
+  // A regime from before the window is in no bet: yet the errors as a whole may be larger.
   const ServedErrors errors = served_errors(standard.league, served, member);
   if (!(errors.own < errors.champion))
     return because<Code::worse_over_regimes>(champion, errors.own, errors.champion);

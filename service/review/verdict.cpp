@@ -21,7 +21,6 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("blocks", finding.blocks);
   read("log_wealth", finding.log_wealth);
   read("log_threshold", finding.log_threshold);
-  read("mean_score", finding.mean_score);
   read("lower_score", finding.lower_score);
   read("uncovered_share", finding.uncovered_share);
   read("log_wealth_without_offset", finding.wealth_without_offset);

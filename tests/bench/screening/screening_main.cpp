@@ -35,14 +35,19 @@ struct Tally {
   std::map<std::string, std::int64_t> rows_by_kind;
 };
 
-void screen(const Record& window, const std::vector<std::string>& names, Tally& tally) {
+TickSet excluded_by(const std::vector<SensorFault>& faults) {
+  std::vector<TickRange> ranges;
+  for (const SensorFault& fault : faults) ranges.push_back(fault.ticks);
+  return united(std::move(ranges));
+}
+
+/// Returns what is excluded of the window.
+TickSet screen(const Record& window, const std::vector<std::string>& names, Tally& tally) {
   const auto begin = std::chrono::steady_clock::now();
   const auto faults = sensor_faults(window, std::vector<bool>(names.size(), true));
   const auto taken = std::chrono::steady_clock::now() - begin;
   tally.milliseconds += std::chrono::duration<double, std::milli>(taken).count();
-  std::vector<TickRange> ranges;
   for (const SensorFault& fault : faults) {
-    ranges.push_back(fault.ticks);
     const std::string kind(name(fault.kind));
     ++tally.by_kind[kind];
     tally.rows_by_kind[kind] += size({fault.ticks});
@@ -51,7 +56,9 @@ void screen(const Record& window, const std::vector<std::string>& names, Tally& 
   tally.rows += window.rows();
   ++tally.windows;
   if (!faults.empty()) ++tally.windows_with_faults;
-  tally.left_out += size(united(std::move(ranges)));
+  TickSet excluded = excluded_by(faults);
+  tally.left_out += size(excluded);
+  return excluded;
 }
 
 /// Changes a channel's values at rows of its choice, which it returns.
@@ -127,22 +134,17 @@ const std::vector<InjectedFault>& injected_faults() {
   return all;
 }
 
-TickSet excluded_of(const Record& window, std::size_t channels) {
-  std::vector<TickRange> ranges;
-  for (const SensorFault& fault : sensor_faults(window, std::vector<bool>(channels, true)))
-    ranges.push_back(fault.ticks);
-  return united(std::move(ranges));
-}
-
 /// What became of faults of one kind. One is found where at least half of its rows are excluded.
 struct Injected {
   int faults = 0, found = 0;
   std::int64_t other_rows = 0;  // that are excluded with it, and not without
 };
 
-void inject(const Record& window, std::size_t channels, const InjectedFault& kind,
+/// `excluded` of the window as it is.
+void inject(const Record& window, const TickSet& excluded, const InjectedFault& kind,
             std::mt19937& random, Injected& tally) {
   Record faulty = window;
+  const auto channels = static_cast<std::size_t>(window.u.cols() + window.y.cols());
   const auto channel = static_cast<Index>(random() % channels);
   const bool is_input = channel < faulty.u.cols();
   const std::vector<Index> rows =
@@ -154,10 +156,11 @@ void inject(const Record& window, std::size_t channels, const InjectedFault& kin
       if (row >= segment.begin && row < segment.end)
         injected.push_back({segment.first_tick + row - segment.begin,
                             segment.first_tick + row - segment.begin + 1});
-  const TickSet own = united(std::move(injected)), found = excluded_of(faulty, channels);
+  const TickSet own = united(std::move(injected));
+  const TickSet found = excluded_by(sensor_faults(faulty, std::vector<bool>(channels, true)));
   std::int64_t hit = 0;
   for (const TickRange& range : own) hit += size(inside(found, range));
-  TickSet expected = excluded_of(window, channels);
+  TickSet expected = excluded;
   expected.insert(expected.end(), own.begin(), own.end());
   std::int64_t others = size(found);
   for (const TickRange& range : united(std::move(expected))) others -= size(inside(found, range));
@@ -182,10 +185,10 @@ int run(const reident::cli::DataRequest& request, int window_rows, int faults) {
     const RowRange rows{begin, begin + window_rows};
     const Record window{record.period_s, record.u.middleRows(begin, window_rows),
                         record.y.middleRows(begin, window_rows), segments_from(record, rows)};
-    screen(window, names, tally);
+    const TickSet excluded = screen(window, names, tally);
     for (int i = 0; i < faults; ++i)
       for (std::size_t kind = 0; kind < injected.size(); ++kind)
-        inject(window, names.size(), injected_faults()[kind], random, injected[kind]);
+        inject(window, excluded, injected_faults()[kind], random, injected[kind]);
   }
   ordered_json result = {
       {"windows", tally.windows},

@@ -98,7 +98,7 @@ TEST(Bias, VersionIsNoBiasOfASensorThatARelationBinds) {
 }
 
 TEST(Bias, VersionThatIsBetterByAConstantMostOfAllWaits) {
-  // Of the gain, log(10), a constant of the champion's errors explains log(5).
+  // A constant of the champion's errors explains log(5) of the gain, which is log(10).
   Records records(200);
   records.champion([](int block) {
            return block < 100 ? Error{0, 0.01} : Error{1, 0.05};
