@@ -71,7 +71,8 @@ void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) 
   if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
   if (!grow || all_.blocks < blocks_of_cycle) return;
   if (fail(all_.sums, so_far_)) return begin_anew(all_.errors.calm_until, block.range.end);
-  all_ = {};
+  all_.blocks = 0;
+  all_.sums = {};
 }
 
 }  // namespace reident

@@ -40,7 +40,7 @@ class ChangeFinder {
   struct AllErrors {
     Errors errors;
     bool have_grown = false;
-    int blocks = 0;  // since they were calm
+    int blocks = 0;  // since they were calm, or since the model was last found of use
     Sums sums;       // likewise
 
     /// Whether growth is found with the block, or was.

@@ -1,6 +1,7 @@
 #include "service/judgement/coverage.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace reident {
 
@@ -49,23 +50,26 @@ std::vector<Time> earlier_blocks(const League& league, const std::map<int, Serve
   return begins;
 }
 
-ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
-                           const Member& member) {
-  Sums own, champion;
+double served_error_ratio(const League& league, const std::map<int, ServedRegime>& served,
+                          const Member& member) {
+  double log_ratio = 0, time = 0;
   for (const auto& [number, regime] : served) {
-    std::vector<std::size_t> both;
-    for (const std::size_t i : regime.blocks)
-      if (const Time begin = league.blocks[i].range.begin;
-          find(member.scores, begin) && find(league.champion->scores, begin))
-        both.push_back(i);
-    const double weight = static_cast<double>(regime.blocks.size()) / double(both.size());
-    for (const std::size_t i : both) {
+    Sums own, champion;
+    for (const std::size_t i : regime.blocks) {
       const Block& block = league.blocks[i];
-      own.add(block, find(member.scores, block.range.begin)->square, weight);
-      champion.add(block, find(league.champion->scores, block.range.begin)->square, weight);
+      const BlockScore* one = find(member.scores, block.range.begin);
+      const BlockScore* other = find(league.champion->scores, block.range.begin);
+      if (!one || !other) continue;
+      const Squares squares = squares_of(*one, *other);
+      own.add(block, squares.one);
+      champion.add(block, squares.other);
     }
+    if (own.rows == 0) continue;
+    const auto share = static_cast<double>(regime.blocks.size());
+    log_ratio += share * (own.error / champion.error).sqrt().log().mean();
+    time += share;
   }
-  return {own.mrse_percent(), champion.mrse_percent()};
+  return time > 0 ? std::exp(log_ratio / time) : 1;
 }
 
 }  // namespace reident

@@ -87,9 +87,8 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
   // A regime from before the window is in no bet: yet the errors as a whole may be larger.
-  const ServedErrors errors = served_errors(standard.league, served, member);
-  if (!(errors.own < errors.champion))
-    return because<Code::worse_over_regimes>(champion, errors.own, errors.champion);
+  const double ratio = served_error_ratio(standard.league, served, member);
+  if (!(ratio < 1)) return because<Code::worse_over_regimes>(ratio, champion);
   return std::nullopt;
 }
 

@@ -87,6 +87,7 @@ bool misleads(const satcs::Fault& fault, const std::vector<std::string>& paramet
   };
   switch (fault.kind) {
     case FaultKind::frames_lost:
+      return fault.magnitude >= 1;  // nothing is heard at all
     case FaultKind::two_stations:
     case FaultKind::two_stamping_stations:
     case FaultKind::duplicated_day:

@@ -40,8 +40,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Extremes, time, low, high)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EquipmentOutcome, equipment, publications, changes, attempts,
                                    drifts, regret, champion, output)
 
-OutcomeFolder::OutcomeFolder(std::filesystem::path folder, std::uint64_t draw)
-    : folder_(std::move(folder)), draw_(draw) {
+OutcomeFolder::OutcomeFolder(std::filesystem::path folder, std::uint64_t draw, std::string keys)
+    : folder_(std::move(folder)),
+      made_by_({{"program", program_version()}, {"draw", draw}, {"set", std::move(keys)}}) {
   std::filesystem::create_directories(folder_);
 }
 
@@ -54,10 +55,12 @@ std::optional<ScenarioOutcome> OutcomeFolder::find(const LifeGroup& group,
   const std::filesystem::path path = file_of(scenario.number);
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
-  const nlohmann::json kept = nlohmann::json::from_cbor(file);
-  if (kept.at("program") != program_version() || kept.at("draw") != draw_)
-    throw std::runtime_error(path.string() + " was made by " + kept.at("program").dump() +
-                             " of draw " + kept.at("draw").dump() + ": name another folder");
+  const nlohmann::json kept = nlohmann::json::from_cbor(file, true, false);
+  if (kept.is_discarded())
+    throw std::runtime_error(path.string() + " is damaged: remove it, and its scenario runs again");
+  if (kept.at("made_by") != made_by_)
+    throw std::runtime_error(path.string() + " was made by " + kept.at("made_by").dump() +
+                             ": name another folder");
   ScenarioOutcome outcome = planned(group, scenario);
   kept.at("equipment").get_to(outcome.equipment);
   return outcome;
@@ -66,8 +69,7 @@ std::optional<ScenarioOutcome> OutcomeFolder::find(const LifeGroup& group,
 void OutcomeFolder::keep(const ScenarioOutcome& outcome) const {
   const std::filesystem::path path = file_of(outcome.number), part = path.string() + ".part";
   std::ofstream file(part, std::ios::binary);
-  nlohmann::json::to_cbor(
-      {{"program", program_version()}, {"draw", draw_}, {"equipment", outcome.equipment}}, file);
+  nlohmann::json::to_cbor({{"made_by", made_by_}, {"equipment", outcome.equipment}}, file);
   if (!file.flush()) throw std::runtime_error(part.string() + ": cannot be written");
   std::filesystem::rename(part, path);
 }

@@ -74,6 +74,16 @@ TEST(Recipe, HasAConfigurationOfTheGroupsEquipmentAlone) {
   EXPECT_EQ(spacecraft.relations, whole.spacecraft.front().relations);
 }
 
+TEST(Recipe, HasTheKeysThatAreSetInEveryEquipment) {
+  const auto keys = "bias = \"approve\"\nmargin = 5";
+  for (const EquipmentConfig& equipment :
+       suite_config(satcs::Family::power, keys).spacecraft[0].equipment) {
+    EXPECT_EQ(equipment.bias, BiasPolicy::approve);
+    EXPECT_EQ(equipment.margin_percent, 5);
+  }
+  EXPECT_THROW(suite_toml({}, satcs::Family::power, "bias"), std::exception);
+}
+
 TEST(Recipe, HasThePlatformsConfigurationForThePlatform) {
   const auto parsed = parse_config(suite_toml({"TANK"}, satcs::Family::platform), {});
   const Config& config = std::get<Config>(parsed);

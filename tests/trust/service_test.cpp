@@ -56,8 +56,13 @@ TEST(Trust, AFailedCellIsFollowed) {
   EXPECT_EQ(story(*found), story(outcome));
   EXPECT_EQ(picture(*found), picture(outcome));
   EXPECT_FALSE(kept.find(group, {2, "none", {}}));
-  EXPECT_THROW(OutcomeFolder(folder.path(), 8).find(group, group.scenarios.front()),
-               std::runtime_error);
+  const auto refused = [&](const OutcomeFolder& by) {
+    EXPECT_THROW(by.find(group, group.scenarios.front()), std::runtime_error);
+  };
+  refused(OutcomeFolder(folder.path(), 8));
+  refused(OutcomeFolder(folder.path(), 7, "margin = 5"));
+  std::filesystem::resize_file(folder.path() / "1.cbor", 100);
+  refused(kept);
 }
 
 TEST(Trust, ABiasedSensorIsNotFollowed) {

@@ -36,7 +36,8 @@ void change(toml::table& equipment, satcs::Family family) {
 
 }  // namespace
 
-std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family family) {
+std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family family,
+                       const std::string& keys) {
   ConfigDocument document = parse_document(read_text(path_of(family)));
   toml::array* all = document.table["spacecraft"][0]["equipment"].as_array();
   if (!all)
@@ -50,6 +51,7 @@ std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family 
         std::find(equipment.begin(), equipment.end(), name) == equipment.end())
       continue;
     change(one, family);
+    for (const auto& [key, value] : toml::parse(keys)) one.insert_or_assign(key, value);
     chosen.push_back(one);
   }
   *all = std::move(chosen);
@@ -58,8 +60,8 @@ std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family 
   return text.str();
 }
 
-Config suite_config(satcs::Family family) {
-  auto parsed = parse_config(suite_toml({}, family), {});
+Config suite_config(satcs::Family family, const std::string& keys) {
+  auto parsed = parse_config(suite_toml({}, family, keys), {});
   if (const auto* mistakes = std::get_if<std::vector<ConfigMistake>>(&parsed))
     throw std::runtime_error(fmt::format("{}: {}", path_of(family), mistakes->front().message));
   Config config = std::get<Config>(std::move(parsed));

@@ -45,6 +45,7 @@ struct Options {
   std::string databases;              // a folder
   std::string keep;                   // a folder
   std::string outcomes;               // a folder
+  std::string keys;                   // in TOML
   std::optional<std::uint64_t> draw;  // absent: a fresh one
   unsigned jobs = 2;
   int sequences = 200;
@@ -92,13 +93,13 @@ void list(const std::vector<LifeGroup>& groups) {
 }
 
 /// A line of JSON each: what runs the scenario with the real processes.
-void print_recipes(const std::vector<LifeGroup>& groups) {
+void print_recipes(const std::vector<LifeGroup>& groups, const std::string& keys) {
   for (const LifeGroup& group : groups)
     for (const Scenario& scenario : group.scenarios) {
       const Recipe recipe = recipe_of(group, scenario);
       const nlohmann::ordered_json json{
           {"scenario", scenario.number},
-          {"configuration", suite_toml(group.equipment, group.family)},
+          {"configuration", suite_toml(group.equipment, group.family, keys)},
           {"simulator", recipe.simulator},
           {"spacecraft", recipe.spacecraft}};
       fmt::print("{}\n", json.dump());
@@ -135,7 +136,7 @@ std::vector<ScenarioOutcome> run(const std::vector<LifeGroup>& groups, const Con
                                  const Options& options) {
   const test::TemporaryFolder folder;
   std::optional<OutcomeFolder> kept;
-  if (!options.outcomes.empty()) kept.emplace(options.outcomes, *options.draw);
+  if (!options.outcomes.empty()) kept.emplace(options.outcomes, *options.draw, options.keys);
   std::vector<std::vector<ScenarioOutcome>> outcomes(groups.size());
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
@@ -229,6 +230,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--outcomes", options.outcomes,
                  "keep what became of each scenario in this folder, and do not run again what it "
                  "has: a run that was interrupted goes on");
+  app.add_option("--set", options.keys,
+                 "keys of every equipment, as in reident.toml: --set 'bias = \"approve\"'");
   app.add_option("--jobs", options.jobs, "groups side by side")->check(CLI::Range(1, 64));
 }
 
@@ -256,14 +259,14 @@ int main(int argc, char** argv) {
     }
     Configs configs;
     for (const satcs::Family family : {satcs::Family::power, satcs::Family::platform})
-      configs.emplace(family, suite_config(family));
+      configs.emplace(family, suite_config(family, options.keys));
     const std::vector<LifeGroup> groups = wanted_groups(configs, options);
     if (options.list) {
       list(groups);
       return 0;
     }
     if (options.recipe) {
-      print_recipes(groups);
+      print_recipes(groups, options.keys);
       return 0;
     }
     if (!is_chosen)

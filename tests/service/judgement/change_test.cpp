@@ -91,6 +91,21 @@ TEST(ChangeFinder, FindsAChangeWithAnotherRegimeWhereTheModelFailsThere) {
   EXPECT_LE(harder, 4);
 }
 
+TEST(ChangeFinder, FindsAChangeThatGrowsInAnotherRegime) {
+  // A battery that loses cells runs down for days before the model is of no use any more.
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Equipment equipment(seed, 1);
+    ChangeFinder finder;
+    for (int block = 0; block < 100; ++block) equipment.next(finder, 0.02);
+    for (int block = 0; block < 20; ++block) equipment.next(finder, 0.06, 1);
+    int block = 0;
+    while (block < 8 && !equipment.next(finder, 10, 1)) ++block;
+    found += block < 8;
+  }
+  EXPECT_GE(found, 90);
+}
+
 TEST(ChangeFinder, LearnsNothingFromOutputsThatAreNoise) {
   Equipment equipment(1, 0);
   ChangeFinder finder;

@@ -135,6 +135,19 @@ TEST(League, RegimesOfTheChampionBeforeCountUntilTheEquipmentChanges) {
   }
 }
 
+// Two days of swapped parameters, say: the champion was fitted to them and is of no use behind.
+TEST(League, ARegimeInWhichEveryErrorIsHugeDecidesForItsTimeAlone) {
+  for (const auto& [blocks, obstacle] :
+       {std::pair(30, std::optional<Code>()), {75, std::optional(Code::worse_over_regimes)}}) {
+    Records records(160);
+    records.swings(0, static_cast<std::size_t>(blocks) - 3);
+    const auto champion = [end = blocks](int block) { return Error{0, block < end ? 1e8 : 1}; };
+    records.champion(champion).challenger(varying(0.01), 90);
+    records.ran_before(records.league().challengers[0], white(1e14), blocks - 16, blocks);
+    EXPECT_EQ(records.obstacle(), obstacle) << blocks;
+  }
+}
+
 TEST(League, VersionsAreTheLeastIntervalApart) {
   Records records(200);
   records.champion(white(0.04), 40).challenger(white(0.01), 42).limits().min_interval = cycle;
