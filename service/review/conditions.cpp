@@ -35,8 +35,10 @@ Place place_of(std::string_view obstacle) {
 }
 
 std::string offset(const Finding& finding) {
-  return fmt::format("{:.2f}; champion's MRSE {:.3g} %", finding.wealth_without_offset,
-                     finding.mrse_without_offset);
+  std::string text = fmt::format("{:.2f}", finding.wealth_without_offset);
+  if (finding.mrse_without_offset > 0)  // older decisions do not have it
+    text += fmt::format("; champion's MRSE {:.3g} %", finding.mrse_without_offset);
+  return text;
 }
 
 }  // namespace
