@@ -85,7 +85,8 @@ Matrix response(identification::StateSpaceModel model, identification::Record re
   const Vector usual = change.colwise().mean().transpose();
   const Vector steady =
       identification::solve_full_lu(Matrix::Identity(n, n) - model.A, Vector(model.B * usual));
-  if (change.isApprox(usual.transpose().replicate(change.rows(), 1)))
+  const Vector spread = (change.colwise().maxCoeff() - change.colwise().minCoeff()).transpose();
+  if (spread.norm() <= 1e-11 * usual.norm())
     return (model.C * steady + model.D * usual).transpose().replicate(change.rows(), 1);
   Matrix outputs(record.rows(), model.outputs());
   for (const Segment& segment : record.segments)

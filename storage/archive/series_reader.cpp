@@ -74,7 +74,9 @@ void SeriesReader::each_recent(std::int64_t series, Time first, Time last, const
   std::int64_t from = 0, to = 0;
   {
     sqlite::Query batches = connection_.query(
-        "SELECT min(batch), max(batch), (SELECT moved FROM series WHERE id = ?) + 1 FROM recent",
+        // SQLite looks up one of min() and max() in the index, and scans the table for both.
+        "SELECT (SELECT min(batch) FROM recent), (SELECT max(batch) FROM recent), "
+        "(SELECT moved FROM series WHERE id = ?) + 1",
         series);
     if (!batches.step() || batches.is_null(1)) return;
     extents_.erase(extents_.begin(), extents_.lower_bound({batches.integer(0), 0}));

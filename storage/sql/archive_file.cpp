@@ -181,7 +181,9 @@ void ArchiveFile::decode(const SeriesName& series, const ChunkEntry& chunk, Time
 const std::vector<ArchiveFile::Fragment>& ArchiveFile::fragments(const SeriesName& series) {
   const auto [place, is_new] = fragments_.try_emplace(series.id);
   if (!is_new) return place->second;
-  Statement& batches = prepared(batches_, "SELECT min(batch), max(batch) FROM main.recent");
+  Statement& batches =
+      prepared(batches_,
+               "SELECT (SELECT min(batch) FROM main.recent), (SELECT max(batch) FROM main.recent)");
   if (!batches.bind().step() || batches.is_null(0)) return place->second;
   const std::int64_t last = batches.integer(1);
   if (last <= series.moved) return place->second;

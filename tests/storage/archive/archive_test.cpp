@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "storage/database/connection.hpp"
 #include "tests/storage/fixture.hpp"
 
 namespace reident::storage::test::archive_test {
@@ -52,6 +53,19 @@ TEST_F(ArchiveTest, ReadsHalfOpenRanges) {
   for (const auto& [range, times] : table)
     EXPECT_EQ(archive.read("CB4", Origin::real, 1, range).time, times)
         << "[" << range.begin << ", " << range.end << ")";
+}
+
+TEST_F(ArchiveTest, LooksUpWhatItReadsAndScansNoTable) {
+  for (unsigned batch = 1; batch <= 300; ++batch)
+    append({frame(batch, 10 * batch, {{1, Quality::good, 1}})});
+  sqlite3* handle = connection(database).handle();
+  EXPECT_EQ(archive.read("CB4", Origin::real, 1, {2990, most}).time.size(), 2U);
+  int scanned = 0;
+  for (sqlite3_stmt* one = sqlite3_next_stmt(handle, nullptr); one;
+       one = sqlite3_next_stmt(handle, one))
+    if (const std::string sql = sqlite3_sql(one); sql.find("recent") != std::string::npos)
+      scanned += sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 0);
+  EXPECT_EQ(scanned, 0);
 }
 
 TEST_F(ArchiveTest, FindsTheNearestSampleOnEitherSide) {
