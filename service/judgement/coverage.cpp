@@ -1,7 +1,6 @@
 #include "service/judgement/coverage.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace reident {
 
@@ -50,26 +49,33 @@ std::vector<Time> earlier_blocks(const League& league, const std::map<int, Serve
   return begins;
 }
 
-double served_error_ratio(const League& league, const std::map<int, ServedRegime>& served,
-                          const Member& member) {
-  double log_ratio = 0, time = 0;
+ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
+                           const Member& member) {
+  Sums usual;
+  for (const Block& block : league.blocks)
+    if (counts(block) && block.range.begin >= member.window.begin &&
+        block.range.end <= member.window.end)
+      usual.add(block, block.output_square);
+  const auto add = [&](Sums& sums, const Member& of, const Block& block, double weight) {
+    std::vector<double> square = find(of.scores, block.range.begin)->square;
+    for (std::size_t q = 0; usual.rows > 0 && q < square.size(); ++q)
+      square[q] = std::min(square[q], usual.error(std::ptrdiff_t(q)) / usual.rows);
+    sums.add(block, square, weight);
+  };
+  Sums own, champion;
   for (const auto& [number, regime] : served) {
-    Sums own, champion;
-    for (const std::size_t i : regime.blocks) {
-      const Block& block = league.blocks[i];
-      const BlockScore* one = find(member.scores, block.range.begin);
-      const BlockScore* other = find(league.champion->scores, block.range.begin);
-      if (!one || !other) continue;
-      const Squares squares = squares_of(*one, *other);
-      own.add(block, squares.one);
-      champion.add(block, squares.other);
+    std::vector<std::size_t> both;
+    for (const std::size_t i : regime.blocks)
+      if (const Time begin = league.blocks[i].range.begin;
+          find(member.scores, begin) && find(league.champion->scores, begin))
+        both.push_back(i);
+    const double weight = static_cast<double>(regime.blocks.size()) / double(both.size());
+    for (const std::size_t i : both) {
+      add(own, member, league.blocks[i], weight);
+      add(champion, *league.champion, league.blocks[i], weight);
     }
-    if (own.rows == 0) continue;
-    const auto share = static_cast<double>(regime.blocks.size());
-    log_ratio += share * (own.error / champion.error).sqrt().log().mean();
-    time += share;
   }
-  return time > 0 ? std::exp(log_ratio / time) : 1;
+  return {own.mrse_percent(), champion.mrse_percent()};
 }
 
 }  // namespace reident

@@ -29,10 +29,14 @@ std::vector<storage::Time> earlier_blocks(const League& league,
                                           const std::map<int, ServedRegime>& served,
                                           const Member& member);
 
-/// The member's error over the champion's, as the geometric mean over the regimes in which both
-/// ran, each with its share of the time: one in which no model is of use, such as a fault's,
-/// decides for its time alone. 1 without a regime. Requires a champion.
-double served_error_ratio(const League& league, const std::map<int, ServedRegime>& served,
-                          const Member& member);
+/// Errors of the member and the champion over the regimes in which both ran, each with its share of
+/// the time [MRSE in percent]. On no block is one larger than the outputs are in the member's
+/// window: one in which no model is of use, such as a fault's, decides for its time alone. Requires
+/// a champion.
+struct ServedErrors {
+  double own = 0, champion = 0;
+};
+ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
+                           const Member& member);
 
 }  // namespace reident

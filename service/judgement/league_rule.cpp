@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "service/judgement/coverage.hpp"
@@ -18,7 +17,6 @@ using identification::Index;
 using identification::log_wealth;
 using identification::lower_mean;
 using identification::ScoreSeries;
-using storage::Block;
 using storage::BlockScore;
 using storage::Time;
 using Code = ReasonCode;
@@ -27,22 +25,16 @@ double less_by_margin(double mrse_percent, const EquipmentConfig& limits) {
   return mrse_percent * (1 - limits.margin_percent / 100);
 }
 
-/// The member compared with the champion without what an offset explains of its error in each last
-/// cycle.
-Comparison without(const OffsetFit& offset, const Standard& standard, const Member& member,
+/// The member compared with the champion without what an offset explains of its errors there.
+Comparison without(OffsetFit offset, const League& league, const Member& member,
                    const Comparison& compared) {
-  const League& league = standard.league;
+  for (const std::size_t i : compared.blocks)
+    offset.add(phase_of(league.blocks[i]), *find(*league.champion, league.blocks[i].range.begin));
   Comparison result;
   for (const std::size_t i : compared.blocks) {
-    OffsetFit fit = offset;
-    for (std::size_t k = i + 1; k-- > 0 && i - k < blocks_of_cycle;)
-      if (const BlockScore* score = find(*league.champion, league.blocks[k].range.begin);
-          score && counts(league.blocks[k]))
-        fit.add(phase_of(league.blocks[k]), *score);
-    const Time begin = league.blocks[i].range.begin;
-    BlockScore rest = *find(*league.champion, begin);
-    rest.square = fit.rest(rest);
-    result.add(i, league.blocks[i], *find(member, begin), rest);
+    BlockScore rest = *find(*league.champion, league.blocks[i].range.begin);
+    rest.square = offset.rest(rest);
+    result.add(i, league.blocks[i], *find(member, rest.begin), rest);
   }
   return result;
 }
@@ -53,7 +45,7 @@ SensorPast past_of(const League& league, std::size_t place, Time since) {
   std::vector<std::size_t> phases;
   std::vector<const BlockScore*> scores;
   for_each_score(league, *league.champion, INT64_MIN, 0,
-                 [&](std::size_t, const Block& block, const BlockScore& score) {
+                 [&](std::size_t, const auto& block, const BlockScore& score) {
                    if (!has_effect(score, place) ||
                        (block.range.begin >= since && scores.size() >= reference_blocks))
                      return;
@@ -87,8 +79,9 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
   // A regime from before the window is in no bet: yet the errors as a whole may be larger.
-  const double ratio = served_error_ratio(standard.league, served, member);
-  if (!(ratio < 1)) return because<Code::worse_over_regimes>(ratio, champion);
+  const ServedErrors errors = served_errors(standard.league, served, member);
+  if (!(errors.own < errors.champion))
+    return because<Code::worse_over_regimes>(champion, errors.own, errors.champion);
   return std::nullopt;
 }
 
@@ -99,29 +92,25 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   const League& league = standard.league;
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
   std::string suspects;
-  finding.wealth_without_offset = finding.log_wealth;
-  finding.mrse_without_offset = finding.champion_mrse_percent;
+  finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
   const auto suspect = [&](const std::string& sensor, const OffsetFit& offset) {
-    const Comparison rest = without(offset, standard, member, compared);
+    const Comparison rest = without(offset, league, member, compared);
     const ScoreSeries scores = series(rest.scores.values(), standard.assumed);
-    const double wealth = log_wealth(scores, dependence(scores), 0);
-    const double error = rest.other.mrse_percent();
+    const double wealth = log_wealth(scores, dependence(scores), 0),
+                 error = rest.other.mrse_percent();
     // Half of the gain, as a logarithm: what the offset explains may be lost, and a version that
     // has learnt it errs by it once the bias ends.
     if (!(wealth > finding.log_threshold &&
           error * error > finding.champion_mrse_percent * finding.mrse_percent))
       suspects += (suspects.empty() ? "" : ", ") + sensor;
-    if (wealth > finding.wealth_without_offset) return;
-    finding.wealth_without_offset = wealth;
-    finding.mrse_without_offset = error;
-  };
-  const auto is_unbound = [&](const std::string& sensor) {
-    return std::ranges::count(league.unbound, sensor) > 0;
+    finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
+    finding.mrse_without_offset = std::min(finding.mrse_without_offset, error);
   };
   for (std::size_t q = 0; q < league.outputs.size(); ++q)
-    if (is_unbound(league.outputs[q])) suspect(league.outputs[q], OffsetFit(q));
+    if (std::ranges::count(league.unbound, league.outputs[q]) > 0)
+      suspect(league.outputs[q], OffsetFit(q));
   for (std::size_t place = 0; place < league.sensors.size(); ++place)
-    if (is_unbound(league.sensors[place])) {
+    if (std::ranges::count(league.unbound, league.sensors[place]) > 0) {
       const SensorPast past = past_of(league, place, standard.since);
       suspect(league.sensors[place], OffsetFit(past, place < league.derived_sensors ? most : 1));
     }
@@ -166,7 +155,7 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   Sums own;
   Comparison simulator;
   for_each_score(league, member, INT64_MIN, 0,
-                 [&](std::size_t i, const Block& block, const BlockScore& score) {
+                 [&](std::size_t i, const auto& block, const BlockScore& score) {
                    ++finding.blocks;
                    own.add(block, score.square);
                    simulator.add(i, block, score, block.baseline_square);

@@ -36,7 +36,7 @@ class SensorPast {
   double spread_ = std::numeric_limits<double>::infinity();
 };
 
-/// Fit of the errors of a run on the blocks of a cycle by an offset of one sensor.
+/// Fit of the errors of a run by an offset of one sensor: the same one on all blocks.
 class OffsetFit {
  public:
   /// An output's sensor adds a constant to that output.

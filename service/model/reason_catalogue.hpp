@@ -184,9 +184,9 @@ struct Catalogue {
        "has served."},
       {worse_over_regimes, "worse_over_regimes", none,
        "Over the operating regimes since the last change of the equipment, each with its share of "
-       "the time, it errs {error_ratio:.3g} times as much as champion {champion:d} in the "
-       "geometric "
-       "mean."},
+       "the "
+       "time, it errs no less than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
+       "{champion_mrse_percent:.3f} %."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
        "too; no relation binds it. Waits for an operator's approval."},

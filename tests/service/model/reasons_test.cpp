@@ -79,9 +79,9 @@ const Example of_a_member[] = {
      "since the last change of the equipment."},
     {because<Code::worse_in_regime>(3),
      "Worse than champion 3, with confidence, in an operating regime that this one has served."},
-    {because<Code::worse_over_regimes>(1.234, 3),
+    {because<Code::worse_over_regimes>(3, 5.0, 4.5),
      "Over the operating regimes since the last change of the equipment, each with its share of "
-     "the time, it errs 1.23 times as much as champion 3 in the geometric mean."},
+     "the time, it errs no less than champion 3: MRSE 5.000 % and 4.500 %."},
     {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
      "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
      "relation binds it. Waits for an operator's approval."},
