@@ -98,10 +98,10 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     const ScoreSeries scores = series(rest.scores.values(), standard.assumed);
     const double wealth = log_wealth(scores, dependence(scores), 0),
                  error = rest.other.mrse_percent();
-    // Half of the gain, as a logarithm: what the offset explains may be lost, and a version that
-    // has learnt it errs by it once the bias ends.
+    // Half of the gain, as a logarithm, or twice the version's error: what the offset explains may
+    // be lost, and a version that has learnt it errs by it once the bias ends.
     if (!(wealth > finding.log_threshold &&
-          error * error > finding.champion_mrse_percent * finding.mrse_percent))
+          std::max(error / finding.champion_mrse_percent, most) * error > finding.mrse_percent))
       suspects += (suspects.empty() ? "" : ", ") + sensor;
     finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
     finding.mrse_without_offset = std::min(finding.mrse_without_offset, error);

@@ -66,7 +66,8 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        {}},
       {"R2", "worse in no regime, with confidence; less error over all", "", {}},
       {"R3",
-       fmt::format("without the champion's offset, above {:.2f} too, and half of the gain",
+       fmt::format("without the champion's offset, above {:.2f} too, and half of the gain or twice "
+                   "its error",
                    finding.log_threshold),
        limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\"" : offset(finding),
        {}},
