@@ -43,6 +43,8 @@ std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family 
   if (!all)
     throw std::runtime_error(fmt::format("{}: has no [[spacecraft.equipment]]", path_of(family)));
   document.table["archive"].as_table()->insert_or_assign("database", "reference.db");
+  const toml::parse_result set = toml::parse(keys);
+  if (!set) throw std::runtime_error(fmt::format("{}: {}", keys, set.error().description()));
   toml::array chosen;
   for (toml::node& node : *all) {
     toml::table& one = *node.as_table();
@@ -51,7 +53,7 @@ std::string suite_toml(const std::vector<std::string>& equipment, satcs::Family 
         std::find(equipment.begin(), equipment.end(), name) == equipment.end())
       continue;
     change(one, family);
-    for (const auto& [key, value] : toml::parse(keys)) one.insert_or_assign(key, value);
+    for (const auto& [key, value] : set.table()) one.insert_or_assign(key, value);
     chosen.push_back(one);
   }
   *all = std::move(chosen);
