@@ -59,6 +59,10 @@ std::variant<Subject, Refusal> parse_subject(const std::string& text) {
     if (!subject.version || *subject.version < 1)
       return Refusal{fmt::format("{} names no version; write it as SPACECRAFT/EQUIPMENT@1", text)};
     rest.resize(at);
+    if (const std::size_t other = rest.rfind('@');
+        other != std::string::npos && whole_number(rest.substr(other + 1)))
+      return Refusal{fmt::format("{} and {} are two versions; name one", rest.substr(other + 1),
+                                 *subject.version)};
   }
   const std::size_t slash = rest.find('/');
   if (slash != std::string::npos) subject.spacecraft = rest.substr(0, slash);

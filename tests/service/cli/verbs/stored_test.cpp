@@ -251,6 +251,7 @@ TEST_F(Stored, ShowRefusesWhatDoesNotExist) {
   EXPECT_THAT(refusal_of(command({"show", "CBERS-4/MEA"})),
               HasSubstr("has no approved version; versions: 1 (waiting)"));
   EXPECT_THAT(refusal_of(command({"show", "CBERS-4/BDR@last"})), HasSubstr("names no version"));
+  EXPECT_THAT(refusal_of(command({"why", "CBERS-4/BDR@1", "2"})), HasSubstr("1 and 2"));
   EXPECT_THAT(refusal_of(command({"show", "CBERS-4/"})), HasSubstr("names no equipment"));
 }
 
