@@ -84,7 +84,8 @@ bool rests_at_end_of_range(const Channel& channel, const std::vector<Plateau>& p
 }
 
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
-/// repeats the one before with some probability, and none of the rest is nearly as long.
+/// repeats the one before with some probability, and none of the rest is nearly as long. They are
+/// exceptions: the rest has as many plateaus at least.
 std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Plateau>& of_all) {
   const std::size_t all = of_all.size();
   std::vector<Plateau> plateaus(std::min(all, most_stuck + 1));  // the longest, and one more
@@ -100,7 +101,7 @@ std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Pl
     const auto others = double(all - count);
     const double log_repeats = std::log1p(-others / double(rest));
     const auto least = double(plateaus[count - 1].size());
-    if (plateaus[count - 1].size() >= least_stuck_rows &&
+    if (others >= double(count) && plateaus[count - 1].size() >= least_stuck_rows &&
         least >= longer * double(plateaus[count].size()) &&
         std::log(others) + (least - 1) * log_repeats < std::log(by_chance))
       break;

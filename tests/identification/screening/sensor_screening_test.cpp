@@ -76,6 +76,26 @@ TEST(Screening, DoesNotCallAQuietSpacecraftStuck) {
     EXPECT_NE(fault.kind, SensorFaultKind::stuck) << fault.channel;
 }
 
+TEST(Screening, DoesNotCallACommandStuckWhoseLastLevelTheRecordCuts) {
+  // A pump's speed: operations, each of its own level. Two rows of the last are in the record.
+  struct Level {
+    double value;
+    Index rows;
+  };
+  Telemetry telemetry(1, 2'016);
+  auto values = telemetry.channel(Telemetry::temperature);
+  Index row = 0;
+  for (const auto& [value, rows] :
+       {Level{3'000, 84}, Level{5'790, 146}, Level{3'000, 48}, Level{5'180, 80}, Level{3'000, 677},
+        Level{3'540, 172}, Level{3'000, 477}, Level{4'090, 168}, Level{3'000, 162},
+        Level{3'590, 2}}) {
+    values.segment(row, rows).setConstant(value);
+    row += rows;
+  }
+  for (const SensorFault& fault : telemetry.faults())
+    EXPECT_NE(fault.channel, Telemetry::temperature);
+}
+
 TEST(Screening, FindsSpikesAndLeavesMomentsThatTwoSensorsSawAlone) {
   Telemetry telemetry;
   telemetry.channel(Telemetry::load)(1'000) += 9;
