@@ -47,13 +47,9 @@ bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
 }
 
 bool ChangeFinder::AllErrors::add(const Block& block, const BlockScore& score) {
-  ++blocks;
   sums.add(block, score.square);
   have_grown = have_grown || errors.add(block, score);
-  if (!have_grown && errors.growth.is_calm()) {
-    blocks = 0;
-    sums = {};
-  }
+  if (!have_grown && errors.growth.is_calm()) sums = {};
   return have_grown;
 }
 
@@ -69,9 +65,8 @@ void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) 
   Errors& of_regime = regimes_[regime];
   const bool grow_in_regime = of_regime.add(block, score), grow = all_.add(block, score);
   if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
-  if (!grow || all_.blocks < blocks_of_cycle) return;
+  if (!grow || all_.sums.blocks < blocks_of_cycle) return;
   if (fail(all_.sums, so_far_)) return begin_anew(all_.errors.calm_until, block.range.end);
-  all_.blocks = 0;
   all_.sums = {};
 }
 

@@ -40,8 +40,7 @@ class ChangeFinder {
   struct AllErrors {
     Errors errors;
     bool have_grown = false;
-    int blocks = 0;  // since they were calm, or since the model was last found of use
-    Sums sums;       // likewise
+    Sums sums;  // since they were calm, or since the model was last found of use
 
     /// Whether growth is found with the block, or was.
     bool add(const storage::Block& block, const storage::BlockScore& score);

@@ -71,6 +71,7 @@ void Sums::add(const Block& block, const std::vector<double>& square, double wei
   y += weight * array(block.output_mean);
   y_square += weight * array(block.output_square);
   rows += weight;
+  ++blocks;
 }
 
 double Sums::mrse_percent() const {

@@ -15,8 +15,8 @@ namespace reident {
 struct Member {
   std::int64_t version = 0;
   storage::TimeRange window;
-  /// Ascending: its record, from its validation part on, and before it what it erred on blocks
-  /// before its window, if it ran there.
+  storage::Time record = 0;  // begins here, with its validation part
+  /// Ascending: its record, and before it what it erred on earlier blocks, if it ran there.
   std::vector<storage::BlockScore> scores;
 };
 
@@ -42,9 +42,9 @@ bool counts(const storage::Block& block);
 /// The score of the block that begins there; null without one, or without rows.
 const storage::BlockScore* find(const std::vector<storage::BlockScore>& scores,
                                 storage::Time begin);
-/// Likewise in the member's record: null also before its window, where it may have run too.
+/// Likewise in the member's record.
 inline const storage::BlockScore* find(const Member& member, storage::Time begin) {
-  return begin < member.window.begin ? nullptr : find(member.scores, begin);
+  return begin < member.record ? nullptr : find(member.scores, begin);
 }
 
 /// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
@@ -75,6 +75,7 @@ class Scores {
 struct Sums {
   Eigen::ArrayXd error, y, y_square;  // by output
   double rows = 0;
+  std::int64_t blocks = 0;
 
   void add(const storage::Block& block, const std::vector<double>& square, double weight = 1);
   /// 0 without a block.
