@@ -8,6 +8,7 @@
 
 #include "service/history/model_parameters.hpp"
 #include "service/judgement/scores.hpp"
+#include "service/model/model_json.hpp"
 #include "service/operations/commands.hpp"
 #include "storage/archive/holdings.hpp"
 #include "storage/database/snapshot.hpp"
@@ -40,12 +41,13 @@ std::optional<double> percent_in(const std::string& json, const char* key) {
   return evidence[key].get<double>();
 }
 
-/// Errors of the champion and of the simulator's own model over the last cycles.
-void read_errors(const Registry& registry, OverviewRow& row) {
+/// Errors of the champion, by its record, and of the simulator's own model over the last cycles.
+void read_errors(const Registry& registry, storage::Time record, OverviewRow& row) {
   const std::vector<storage::Block> blocks = registry.newest_blocks(row.name, blocks_looked_at);
   if (blocks.empty()) return;
-  const std::vector<storage::BlockScore> scores = registry.scores(
-      row.name.spacecraft, row.name.equipment, row.champion, blocks.front().range.begin);
+  const std::vector<storage::BlockScore> scores =
+      registry.scores(row.name.spacecraft, row.name.equipment, row.champion,
+                      std::max(record, blocks.front().range.begin));
   Sums own, simulator;
   std::size_t taken = 0;
   for (auto block = blocks.rbegin(); block != blocks.rend() && taken < blocks_of_now; ++block) {
@@ -82,11 +84,13 @@ void read_champion(const Registry& registry, const storage::Decision& made, cons
   if (!row.approved_error_percent)
     if (const auto attempt = registry.attempt(version->attempt))
       row.approved_error_percent = percent_in(attempt->evidence_json, "mrse_percent");
+  storage::Time record = version->window.begin;
   try {
+    record = equipment_model_from_json(version->model_json).validated_on.begin;
     row.telemetry = complete_until(row.name.spacecraft, parameters_of(version->model_json), newest);
-  } catch (const std::exception&) {  // damaged: nothing is known of its parameters, verify says it
+  } catch (const std::exception&) {  // damaged: nothing is known of the model, verify says it
   }
-  read_errors(registry, row);
+  read_errors(registry, record, row);
   const auto change = registry.last_change(row.name);
   if (change && change->champion == made.version) row.change = change;
 }

@@ -15,9 +15,7 @@ std::map<int, ServedRegime> served_regimes(const League& league, const std::vect
     ServedRegime& regime = served[regimes[i]];
     const storage::TimeRange& range = league.blocks[i].range;
     if (range.begin >= since) regime.blocks.push_back(i);
-    const bool ran_before = range.begin < member.window.begin && find(member.scores, range.begin);
-    regime.is_met = regime.is_met || ran_before ||
-                    range.end - blocks_of_cycle * (range.end - range.begin) >= member.window.begin;
+    regime.is_met = regime.is_met || find(member.scores, range.begin);
   }
   return served;
 }
@@ -36,21 +34,21 @@ std::vector<Time> earlier_blocks(const League& league, const std::map<int, Serve
                                  const Member& member) {
   std::vector<Time> begins;
   for (const auto& [number, regime] : served) {
-    if (regime.is_met) continue;
-    int left = cycles_before * blocks_of_cycle;
-    for (auto i = regime.blocks.rbegin(); i != regime.blocks.rend() && left > 0; ++i) {
-      const storage::TimeRange& range = league.blocks[*i].range;
-      if (range.end > member.window.begin) continue;
-      begins.push_back(range.begin);
-      --left;
-    }
+    const auto& blocks = regime.blocks;
+    const auto record = std::ranges::lower_bound(
+        blocks, member.record, {}, [&](std::size_t i) { return league.blocks[i].range.begin; });
+    if (blocks.end() - record >= blocks_of_cycle) continue;
+    const auto count =
+        std::min<std::ptrdiff_t>(record - blocks.begin(), cycles_before * blocks_of_cycle);
+    for (auto i = record - count; i != record; ++i) begins.push_back(league.blocks[*i].range.begin);
   }
   std::ranges::sort(begins);
   return begins;
 }
 
-ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
-                           const Member& member) {
+std::pair<double, double> served_errors(const League& league,
+                                        const std::map<int, ServedRegime>& served,
+                                        const Member& member) {
   Sums usual;
   for (const Block& block : league.blocks)
     if (counts(block) && block.range.begin >= member.window.begin &&

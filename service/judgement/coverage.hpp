@@ -10,9 +10,7 @@ namespace reident {
 
 struct ServedRegime {
   std::vector<std::size_t> blocks;  // places in the league, since the equipment's last change
-  /// A whole cycle of it lies in the member's window or behind, or the member ran on blocks of it
-  /// from before.
-  bool is_met = false;
+  bool is_met = false;              // the member ran on a block of it
 };
 
 /// By the number of the regime; `regimes` has those of the league's blocks. The equipment is as it
@@ -23,20 +21,18 @@ std::map<int, ServedRegime> served_regimes(const League& league, const std::vect
 /// Share of the blocks that are in regimes which the member has not met.
 double uncovered_share(const std::map<int, ServedRegime>& served);
 
-/// Begins of the blocks before the member's window, ascending, on which it has to run: the last
-/// `cycles_before` of each regime that it has not met.
+/// Begins of the blocks before the member's record, ascending, on which it has to run: the last
+/// `cycles_before` of each regime of which the record has no whole cycle.
 std::vector<storage::Time> earlier_blocks(const League& league,
                                           const std::map<int, ServedRegime>& served,
                                           const Member& member);
 
-/// Errors of the member and the champion over the regimes in which both ran, each with its share of
-/// the time [MRSE in percent]. On no block is one larger than the outputs are in the member's
+/// Errors of the member and of the champion over the regimes in which both ran, each with its share
+/// of the time [MRSE in percent]. On no block is one larger than the outputs are in the member's
 /// window: one in which no model is of use, such as a fault's, decides for its time alone. Requires
 /// a champion.
-struct ServedErrors {
-  double own = 0, champion = 0;
-};
-ServedErrors served_errors(const League& league, const std::map<int, ServedRegime>& served,
-                           const Member& member);
+std::pair<double, double> served_errors(const League& league,
+                                        const std::map<int, ServedRegime>& served,
+                                        const Member& member);
 
 }  // namespace reident

@@ -136,7 +136,12 @@ std::vector<Finding> Judge::findings(const League& league) {
 }
 
 std::vector<Time> Judge::earlier_blocks(const League& league, const Member& member) {
-  if (!league.champion) return {};
+  std::vector<Time> begins;
+  if (!league.champion) {
+    for (const Block& block : league.blocks)
+      if (block.range.begin < member.record) begins.push_back(block.range.begin);
+    return begins;
+  }
   take_in(league);
   return reident::earlier_blocks(
       league, served_regimes(league, regimes_.numbers(), member, changed(league)), member);

@@ -47,6 +47,9 @@ struct Finding {
   double mean_score = 0;           // 1: it errs nothing beside the champion; -1: the reverse
   double lower_score = 0;          // lower end of the confidence sequence
   double uncovered_share = 0;      // of the blocks since `changed`, in regimes that it has not met
+  /// Its error and the champion's over the regimes that the champion has served, with their shares
+  /// of the time.
+  std::pair<double, double> over_regimes_mrse_percent;
   double wealth_without_offset = 0;  // log, without what an offset of the likeliest sensor explains
   double mrse_without_offset = 0;    // the champion's [%], likewise
   double mrse_percent = 0;           // on the compared blocks
@@ -85,8 +88,9 @@ class Judge {
 
   /// One finding for each challenger, in their order.
   std::vector<Finding> findings(const League& league);
-  /// Begins of the blocks before the window of `member`, a new one, on which it has to run too:
-  /// cycles of the operating regimes that it has not met.
+  /// Begins of the blocks before the record of `member`, a new one, on which it has to run too:
+  /// cycles of the operating regimes that the record does not have. Later versions are compared
+  /// with it there. A first version runs on all of them.
   std::vector<storage::Time> earlier_blocks(const League& league, const Member& member);
   /// The last change in the champion's record; absent where there is none, or too little to compare
   /// with.

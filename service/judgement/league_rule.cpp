@@ -79,9 +79,9 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
     return because<Code::worse_in_regime>(champion);
   // A regime from before the window is in no bet: yet the errors as a whole may be larger.
-  const ServedErrors errors = served_errors(standard.league, served, member);
-  if (!(errors.own < errors.champion))
-    return because<Code::worse_over_regimes>(champion, errors.own, errors.champion);
+  finding.over_regimes_mrse_percent = served_errors(standard.league, served, member);
+  const auto [own, of_champion] = finding.over_regimes_mrse_percent;
+  if (!(own < of_champion)) return because<Code::worse_over_regimes>(champion, own, of_champion);
   return std::nullopt;
 }
 
@@ -156,10 +156,10 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   Comparison simulator;
   for_each_score(league, member, INT64_MIN, 0,
                  [&](std::size_t i, const auto& block, const BlockScore& score) {
-                   ++finding.blocks;
                    own.add(block, score.square);
                    simulator.add(i, block, score, block.baseline_square);
                  });
+  finding.blocks = own.blocks;
   finding.mrse_percent = own.mrse_percent();
   finding.fit_percent = own.fit_percent();
   finding.baseline_mrse_percent = simulator.other.mrse_percent();

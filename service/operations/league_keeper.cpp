@@ -31,6 +31,8 @@ ordered_json to_json(const Finding& finding) {
           {"mean_score", finding.mean_score},
           {"lower_score", finding.lower_score},
           {"uncovered_share", finding.uncovered_share},
+          {"over_regimes_mrse_percent", finding.over_regimes_mrse_percent.first},
+          {"champion_over_regimes_mrse_percent", finding.over_regimes_mrse_percent.second},
           {"log_wealth_without_offset", finding.wealth_without_offset},
           {"champion_mrse_without_offset_percent", finding.mrse_without_offset},
           {"mrse_percent", finding.mrse_percent},
@@ -124,8 +126,8 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     std::vector<storage::BlockScore> scores =
         registry.scores(spacecraft_, equipment_.name, number, INT64_MIN);
     require_fitting(number, scores, model.dynamics);
-    models_.emplace(number, std::move(model));
-    return Member{number, version->window, std::move(scores)};
+    const Time record = models_.emplace(number, std::move(model)).first->second.validated_on.begin;
+    return Member{number, version->window, record, std::move(scores)};
   };
   std::int64_t passed_over = 0;
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {
@@ -172,11 +174,11 @@ void LeagueKeeper::catch_up(const storage::Archive& archive, Member& member, Tim
   const Duration length = reader_.length();
   const EquipmentModel& model = models_.at(member.version);
   storage::RunState state;
-  Time begin;
+  Time begin = std::max(-floor_divide(-member.record, length) * length,
+                        league_.blocks.empty() ? INT64_MIN : league_.blocks.front().range.begin);
+  if (begin + length > end) return;
   if (member.scores.empty()) run_earlier(archive, member, scores);
-  if (member.scores.empty() || member.scores.back().begin < member.window.begin) {
-    begin = std::max(-floor_divide(-model.validated_on.begin, length) * length,
-                     league_.blocks.empty() ? INT64_MIN : league_.blocks.front().range.begin);
+  if (member.scores.empty() || member.scores.back().begin < member.record) {
     // The run begins a block earlier, on telemetry that the version was fitted to.
     state = score_block(model, member.version, samples_of(archive, begin - length), {}).state;
   } else {

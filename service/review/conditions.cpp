@@ -41,6 +41,11 @@ std::string offset(const Finding& finding) {
   return text;
 }
 
+std::string over_regimes(const Finding& finding) {
+  const auto [own, champion] = finding.over_regimes_mrse_percent;
+  return champion > 0 ? fmt::format("{:.3g} % against {:.3g} %", own, champion) : "";
+}
+
 }  // namespace
 
 std::vector<Condition> conditions_of(const Finding& finding, std::string_view obstacle,
@@ -64,7 +69,7 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("at least {:.3f}; {:.1f} % not met", finding.lower_score,
                    100 * finding.uncovered_share),
        {}},
-      {"R2", "worse in no regime, with confidence; less error over all", "", {}},
+      {"R2", "worse in no regime, with confidence; less error over all", over_regimes(finding), {}},
       {"R3",
        fmt::format("without the champion's offset, above {:.2f} too, and half of the gain or twice "
                    "its error",

@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "service/model/model_json.hpp"
 #include "service/review/evidence.hpp"
+#include "service/windows/provenance.hpp"
 
 namespace reident {
 namespace {
@@ -33,7 +35,11 @@ EquipmentConfig limits_of(const ordered_json& evidence, std::vector<std::string>
 
 Member member_of(const history::HistoryReader& history, const EquipmentName& equipment,
                  std::int64_t version, storage::TimeRange window) {
-  return {version, window, history.scores(equipment, version)};
+  const auto found = history.version(equipment, version);
+  const bool is_known = found && !mistake_in(*found);
+  const storage::Time record =
+      is_known ? equipment_model_from_json(found->model_json).validated_on.begin : window.begin;
+  return {version, window, record, history.scores(equipment, version)};
 }
 
 }  // namespace

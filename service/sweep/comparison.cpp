@@ -150,10 +150,12 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
     one.rows += static_cast<double>(block.rows);
   }
   for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment)) {
-    // It may have run on blocks before its window, of which its record does not tell.
-    const Time window = registry_.version(spacecraft, equipment, version.number)->window.begin;
+    // It may have run on blocks before its record.
+    const auto model = equipment_model_from_json(
+        registry_.version(spacecraft, equipment, version.number)->model_json);
+    const Time record = std::max(range.begin, model.validated_on.begin);
     for (const BlockScore& score :
-         registry_.scores(spacecraft, equipment, version.number, std::max(range.begin, window))) {
+         registry_.scores(spacecraft, equipment, version.number, record)) {
       const auto block = blocks.find(score.begin);
       if (block == blocks.end() || score.rows == 0) continue;
       cycle_of(block->second)

@@ -72,9 +72,9 @@ std::optional<double> cycles_until_change(ErrorKind kind, double ratio, std::uin
   Errors of_champion(kind, 1, 2 * seed), of_version(kind, ratio, 2 * seed + 1);
   League league;
   Judge judge(limits);
-  league.champion = Member{1, {-limits.cycle * 8, 0}, {}};
+  league.champion = Member{1, {-limits.cycle * 8, 0}, 0, {}};
   const storage::TimeRange window{(before - 8 * blocks_of_cycle) * block_ns, before * block_ns};
-  league.challengers = {Member{2, window, {}}};
+  league.challengers = {Member{2, window, window.end, {}}};
   league.admitted = {window};
   for (int i = 0; i < before + followed_cycles * blocks_of_cycle; ++i) {
     const storage::Time begin = i * block_ns;

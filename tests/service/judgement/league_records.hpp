@@ -82,7 +82,7 @@ class Records {
  private:
   Member member(std::int64_t number, storage::TimeRange window, const Errors& errors,
                 int from) const {
-    Member member{number, window, {}};
+    Member member{number, window, from * length, {}};
     for (std::size_t i = static_cast<std::size_t>(from); i < league_.blocks.size(); ++i) {
       const Error error = errors(static_cast<int>(i));
       member.scores.push_back({number,

@@ -102,8 +102,34 @@ TEST(League, NewVersionIsToRunOnTheLastCyclesOfARegimeFromBeforeItsWindow) {
   EXPECT_EQ(earlier().front(), (63 - 16) * length)
       << "three blocks behind are of a cycle with them";
   EXPECT_EQ(earlier().back(), 62 * length);
-  records.ran_before(records.league().challengers[0], varying(0.01), 47, 63);
-  EXPECT_TRUE(earlier().empty());
+}
+
+TEST(League, NewVersionIsToRunOnTheRegimesThatItsWindowHasAndItsRecordDoesNot) {
+  Records records(100);
+  records.swings(70, 80);
+  records.champion(varying(0.02)).challenger(varying(0.01), 92, 8 * cycle);
+  const auto earlier = [&] {
+    return Judge(records.limits())
+        .earlier_blocks(records.league(), records.league().challengers[0]);
+  };
+  ASSERT_FALSE(earlier().empty());
+  EXPECT_EQ(earlier().front(), 70 * length);
+  EXPECT_EQ(earlier().back(), 82 * length);
+  records.league().champion.reset();
+  EXPECT_EQ(earlier().size(), 92) << "a first version, on all";
+}
+
+TEST(League, RegimesOfTheChampionsOwnWindowCount) {
+  // The champion was fitted to a regime that has not come again, in which the version would err.
+  for (const auto& [before, obstacle] :
+       {std::pair(0.01, std::optional<Code>()), {0.5, Code::worse_over_regimes}}) {
+    Records records(160);
+    records.swings(0, 20);
+    records.champion(varying(0.02), 20).challenger(varying(0.01), 90);
+    records.ran_before(*records.league().champion, varying(0.01), 4, 20);
+    records.ran_before(records.league().challengers[0], varying(before), 4, 20);
+    EXPECT_EQ(records.obstacle(), obstacle) << before;
+  }
 }
 
 TEST(League, VersionIsCoveredThatRanOnARegimeFromBeforeItsWindow) {

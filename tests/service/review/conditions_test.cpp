@@ -21,5 +21,16 @@ TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
   EXPECT_EQ(bias("not_better").holds, std::nullopt);
 }
 
+TEST(Conditions, ErrorsOverTheRegimesAreShownWhereTheyAreKnown) {
+  Finding finding;
+  const EquipmentConfig limits;
+  const auto found = [&] {
+    return conditions_of(finding, "worse_over_regimes", limits).at(4).found;
+  };
+  EXPECT_EQ(found(), "");
+  finding.over_regimes_mrse_percent = {2.5, 1.25};
+  EXPECT_EQ(found(), "2.5 % against 1.25 %");
+}
+
 }  // namespace
 }  // namespace reident

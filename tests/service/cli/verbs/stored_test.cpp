@@ -277,7 +277,8 @@ TEST_F(Stored, WhyNamesAChampionThatFails) {
   constexpr int length = 15;  // minutes
   for (int i = 0; i < 60; ++i) {
     storage::Block block;
-    block.range = {start + i * length * minute, start + (i + 1) * length * minute};
+    const storage::Time begin = model_of("BDR").validated_on.begin + i * length * minute;
+    block.range = {begin, begin + length * minute};
     block.rows = 900;
     block.believed = 1;
     block.output_mean = {10};
