@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include <nlohmann/json.hpp>
+#include "service/model/reasons.hpp"
 
 namespace reident::history {
 namespace {
@@ -13,13 +13,6 @@ using storage::Decision;
 using storage::DecisionKind;
 using storage::EquipmentName;
 using storage::Time;
-
-/// The end of the telemetry that a decision of the league looked at.
-std::optional<Time> judged_until(const Decision& decision) {
-  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
-  if (!evidence.is_object() || !evidence.contains("until_ns")) return std::nullopt;
-  return evidence["until_ns"].get<Time>();
-}
 
 /// All decisions with the generation times from which on they count, in the order of recording.
 std::vector<Reign> decisions_by_telemetry(const HistoryReader& history,

@@ -21,13 +21,10 @@ std::map<int, ServedRegime> served_regimes(const League& league, const std::vect
 }
 
 double uncovered_share(const std::map<int, ServedRegime>& served) {
-  double all = 0, uncovered = 0;
-  for (const auto& [number, regime] : served) {
-    const auto blocks = static_cast<double>(regime.blocks.size());
-    all += blocks;
-    if (!regime.is_met) uncovered += blocks;
-  }
-  return all > 0 ? uncovered / all : 0;
+  double met = 0, uncovered = 0;
+  for (const auto& [number, regime] : served)
+    (regime.is_met ? met : uncovered) += static_cast<double>(regime.blocks.size());
+  return uncovered > 0 ? uncovered / (met + uncovered) : 0;
 }
 
 std::vector<Time> earlier_blocks(const League& league, const std::map<int, ServedRegime>& served,

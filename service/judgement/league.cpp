@@ -78,7 +78,8 @@ void Judge::take_in(const League& league) {
 
 const Comparison& Judge::comparison(const League& league, const Member& one, const Member& other) {
   Comparison& found = compared_.pairs[{one.version, other.version}];
-  extend(found, league, one, other, since_);
+  const bool is_return = league.replaced == one.version || league.replaced == other.version;
+  extend(found, league, one, other, is_return ? std::max(since_, league.replaced_at) : since_);
   return found;
 }
 

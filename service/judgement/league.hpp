@@ -28,6 +28,10 @@ struct League {
   std::optional<Member> champion;
   storage::Time changed = INT64_MIN;  // `since` of the last change before the champion was made
   std::vector<Member> challengers;    // ascending by number
+  /// The challenger that the champion replaced, if it is there, and the end of the telemetry by
+  /// which that was decided: it says nothing more of the two.
+  std::optional<std::int64_t> replaced;
+  storage::Time replaced_at = INT64_MIN;
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
   std::vector<std::string> outputs;

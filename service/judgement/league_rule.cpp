@@ -141,10 +141,11 @@ double log_threshold(const League& league, const Member& member, Time since,
                      const EquipmentConfig& limits) {
   constexpr double share_behind = 0.75;
   const bool is_behind = member.window.begin >= since;
-  double k = 0;
+  double k = is_behind ? 0 : 1;
   for (const storage::TimeRange& window : league.admitted)
-    k += is_behind ? window.begin >= since && window.end <= member.window.end
-                   : window.begin < since && window.end >= member.window.end;
+    if (member.version != league.replaced)
+      k += is_behind ? window.begin >= since && window.end <= member.window.end
+                     : window.begin < since && window.end >= member.window.end;
   return std::log(std::max(1.0, k) * (k + 1) / error_probability(limits) /
                   (is_behind ? share_behind : 1 - share_behind));
 }

@@ -125,6 +125,12 @@ std::optional<storage::Time> changed_in(const storage::Decision& decision) {
   return changed.is_number_integer() ? changed.get<storage::Time>() : INT64_MIN;
 }
 
+std::optional<storage::Time> judged_until(const storage::Decision& decision) {
+  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
+  if (!evidence.is_object() || !evidence.contains("until_ns")) return std::nullopt;
+  return evidence["until_ns"].get<storage::Time>();
+}
+
 bool waits_for_operator(const storage::Decision& last) {
   if (last.kind != storage::DecisionKind::wait) return false;
   const std::string code = last_code(last);

@@ -123,6 +123,9 @@ std::string last_code(const storage::Decision& decision);
 /// the decision does not say, as an operator's.
 std::optional<storage::Time> changed_in(const storage::Decision& decision);
 
+/// The end of the telemetry that a decision of the league looked at; absent for other decisions.
+std::optional<storage::Time> judged_until(const storage::Decision& decision);
+
 /// Whether a version, about which this is the last decision, waits for an operator rather than for
 /// telemetry: for an approval or for the end of a hold.
 bool waits_for_operator(const storage::Decision& last);

@@ -130,6 +130,7 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     return Member{number, version->window, record, std::move(scores)};
   };
   std::int64_t passed_over = 0;
+  league_.replaced.reset();
   if (const auto made = registry.champion_decision(spacecraft_, equipment_.name)) {
     league_.champion = member_of(made->version);
     if (league_.champion)
@@ -137,8 +138,11 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
     if (made->actor == gate) {
       // The champion before may be the better one again, as when a change is undone.
       if (const auto before = registry.previous_champion(spacecraft_, equipment_.name))
-        if (auto member = member_of(before->number))
+        if (auto member = member_of(before->number)) {
+          league_.replaced = member->version;
+          league_.replaced_at = judged_until(*made).value_or(INT64_MIN);
           league_.challengers.push_back(*std::move(member));
+        }
     } else if (made->kind == DecisionKind::roll_back) {
       passed_over = made->id;  // the operator knew these versions, and chose another one
     }

@@ -132,6 +132,24 @@ TEST(League, RegimesOfTheChampionsOwnWindowCount) {
   }
 }
 
+TEST(League, VersionReturnsByWhatFollowsItsReplacement) {
+  // The champion was better for eleven cycles, by which it was chosen. Another regime is harder for it.
+  const auto one = [](double before, double after) {
+    return [=](int block) { return Error{0, varying(block < 64 ? before : after)(block).square}; };
+  };
+  for (const auto& [is_return, obstacle] :
+       {std::pair(true, std::optional<Code>()), {false, Code::not_better}}) {
+    Records records(100);
+    records.swings(64, 100);
+    records.champion(one(0.001, 0.5), 20).challenger(one(0.05, 0.02), 20);
+    if (is_return) {
+      records.league().replaced = 2;
+      records.league().replaced_at = 64 * length;
+    }
+    EXPECT_EQ(records.obstacle(), obstacle);
+  }
+}
+
 TEST(League, VersionIsCoveredThatRanOnARegimeFromBeforeItsWindow) {
   // Half of the champion's time was in a regime in which it errs far less than the version would.
   const auto champion = [](int block) { return Error{0, block < 80 ? 0.02 : 0.2}; };
