@@ -13,9 +13,8 @@ std::map<int, ServedRegime> served_regimes(const League& league, const std::vect
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     if (regimes[i] < 0) continue;
     ServedRegime& regime = served[regimes[i]];
-    const storage::TimeRange& range = league.blocks[i].range;
-    if (range.begin >= since) regime.blocks.push_back(i);
-    regime.is_met = regime.is_met || find(member.scores, range.begin);
+    if (league.blocks[i].range.begin >= since) regime.blocks.push_back(i);
+    regime.is_met = regime.is_met || find(member.scores, league.blocks[i].range.begin);
   }
   return served;
 }

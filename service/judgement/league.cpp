@@ -40,7 +40,6 @@ void Judge::take_in(const League& league) {
   if (champion_ != league.champion->version) {
     *this = Judge(*limits_);
     champion_ = league.champion->version;
-    since_ = league.champion->window.begin;
   }
   const std::size_t seen = std::exchange(seen_, league.blocks.size());
   bool are_other_regimes = false;
@@ -78,8 +77,8 @@ void Judge::take_in(const League& league) {
 
 const Comparison& Judge::comparison(const League& league, const Member& one, const Member& other) {
   Comparison& found = compared_.pairs[{one.version, other.version}];
-  const bool is_return = league.replaced == one.version || league.replaced == other.version;
-  extend(found, league, one, other, is_return ? std::max(since_, league.replaced_at) : since_);
+  extend(found, league, one, other,
+         one.version == league.replaced ? std::max(since_, league.replaced_at) : since_);
   return found;
 }
 
@@ -90,9 +89,11 @@ Time Judge::changed(const League& league) const {
 
 /// Dependence of the scores of the two members with the longest records, or of those from before
 /// the last change: what is assumed of versions whose records are short. 0 where there are no two.
+/// The one that the champion replaced is compared with it on too little.
 double Judge::usual_dependence(const League& league) {
   std::vector<const Member*> members{&*league.champion};
-  for (const Member& member : league.challengers) members.push_back(&member);
+  for (const Member& member : league.challengers)
+    if (member.version != league.replaced) members.push_back(&member);
   if (members.size() < 2) return 0;
   std::ranges::partial_sort(members, members.begin() + 2, {},
                             [](const Member* member) { return member->window.end; });
@@ -140,7 +141,8 @@ std::vector<Time> Judge::earlier_blocks(const League& league, const Member& memb
   std::vector<Time> begins;
   if (!league.champion) {
     for (const Block& block : league.blocks)
-      if (block.range.begin < member.record) begins.push_back(block.range.begin);
+      if (block.range.end > member.window.begin && block.range.begin < member.record)
+        begins.push_back(block.range.begin);
     return begins;
   }
   take_in(league);

@@ -3,7 +3,7 @@
 // 19, has the proof).
 //
 // A record is what a version's free run erred on each block of telemetry that nothing of it was
-// fitted to. Equal records give equal findings.
+// fitted to. Equal leagues give equal findings.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct League {
   storage::Time changed = INT64_MIN;  // `since` of the last change before the champion was made
   std::vector<Member> challengers;    // ascending by number
   /// The challenger that the champion replaced, if it is there, and the end of the telemetry by
-  /// which that was decided: it says nothing more of the two.
+  /// which that was decided: the bets on the two begin behind it.
   std::optional<std::int64_t> replaced;
   storage::Time replaced_at = INT64_MIN;
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
@@ -94,7 +94,7 @@ class Judge {
   std::vector<Finding> findings(const League& league);
   /// Begins of the blocks before the record of `member`, a new one, on which it has to run too:
   /// cycles of the operating regimes that the record does not have. Later versions are compared
-  /// with it there. A first version runs on all of them.
+  /// with it there. A first version runs on all of its window.
   std::vector<storage::Time> earlier_blocks(const League& league, const Member& member);
   /// The last change in the champion's record; absent where there is none, or too little to compare
   /// with.
@@ -126,8 +126,8 @@ class Judge {
   std::optional<std::int64_t> champion_;  // that the rest is about
   identification::OperatingRegimes regimes_{blocks_of_cycle};
   ChangeFinder change_;
-  storage::Time since_ = 0;  // records count from here on
-  std::size_t seen_ = 0;     // blocks that were looked at
+  storage::Time since_ = INT64_MIN;  // records count from here on
+  std::size_t seen_ = 0;             // blocks that were looked at
   Compared compared_;
 };
 

@@ -140,7 +140,7 @@ double error_probability(const EquipmentConfig& limits) {
 double log_threshold(const League& league, const Member& member, Time since,
                      const EquipmentConfig& limits) {
   constexpr double share_behind = 0.75;
-  const bool is_behind = member.window.begin >= since;
+  const bool is_behind = member.version != league.replaced && member.window.begin >= since;
   double k = is_behind ? 0 : 1;
   for (const storage::TimeRange& window : league.admitted)
     if (member.version != league.replaced)

@@ -204,9 +204,8 @@ struct Glossary {
        ""},
       {"worse_over_regimes", "no better over all regimes",
        "Over the operating regimes since the last change of the equipment, each with its share of "
-       "the "
-       "time, the version errs no less than the champion. It was run on the last cycles of those "
-       "that lie before its window.",
+       "the time, the version errs no less than the champion. It was run on the last cycles of "
+       "those that its record does not have.",
        ""},
   };
 };

@@ -128,7 +128,8 @@ std::optional<storage::Time> changed_in(const storage::Decision& decision) {
 std::optional<storage::Time> judged_until(const storage::Decision& decision) {
   const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
   if (!evidence.is_object() || !evidence.contains("until_ns")) return std::nullopt;
-  return evidence["until_ns"].get<storage::Time>();
+  const auto& until = evidence["until_ns"];
+  return until.is_number_integer() ? std::optional(until.get<storage::Time>()) : std::nullopt;
 }
 
 bool waits_for_operator(const storage::Decision& last) {

@@ -139,7 +139,7 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
       // The champion before may be the better one again, as when a change is undone.
       if (const auto before = registry.previous_champion(spacecraft_, equipment_.name))
         if (auto member = member_of(before->number)) {
-          league_.replaced = member->version;
+          if (made->kind == DecisionKind::approve) league_.replaced = member->version;
           league_.replaced_at = judged_until(*made).value_or(INT64_MIN);
           league_.challengers.push_back(*std::move(member));
         }

@@ -66,7 +66,7 @@ class LeagueKeeper {
   /// Scores of the member on the blocks up to `end` that it has none of.
   void catch_up(const storage::Archive& archive, Member& member, storage::Time end,
                 std::vector<storage::BlockScore>& scores);
-  /// The run of a new member on telemetry before its window (Judge::earlier_blocks()).
+  /// The run of a new member on telemetry before its record (Judge::earlier_blocks()).
   void run_earlier(const storage::Archive& archive, Member& member,
                    std::vector<storage::BlockScore>& scores);
   /// Decides what the records up to `now` say.

@@ -38,7 +38,7 @@ Member member_of(const history::HistoryReader& history, const EquipmentName& equ
   const auto found = history.version(equipment, version);
   const bool is_known = found && !mistake_in(*found);
   const storage::Time record =
-      is_known ? equipment_model_from_json(found->model_json).validated_on.begin : window.begin;
+      is_known ? equipment_model_from_json(found->model_json).validated_on.begin : window.end;
   return {version, window, record, history.scores(equipment, version)};
 }
 

@@ -150,9 +150,9 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
     one.rows += static_cast<double>(block.rows);
   }
   for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment)) {
-    // It may have run on blocks before its record.
-    const auto model = equipment_model_from_json(
-        registry_.version(spacecraft, equipment, version.number)->model_json);
+    const auto stored = registry_.version(spacecraft, equipment, version.number);
+    if (mistake_in(*stored)) continue;
+    const auto model = equipment_model_from_json(stored->model_json);
     const Time record = std::max(range.begin, model.validated_on.begin);
     for (const BlockScore& score :
          registry_.scores(spacecraft, equipment, version.number, record)) {

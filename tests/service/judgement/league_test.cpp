@@ -116,7 +116,7 @@ TEST(League, NewVersionIsToRunOnTheRegimesThatItsWindowHasAndItsRecordDoesNot) {
   EXPECT_EQ(earlier().front(), 70 * length);
   EXPECT_EQ(earlier().back(), 82 * length);
   records.league().champion.reset();
-  EXPECT_EQ(earlier().size(), 92) << "a first version, on all";
+  EXPECT_EQ(earlier().size(), 32) << "a first version, on all of its window";
 }
 
 TEST(League, RegimesOfTheChampionsOwnWindowCount) {
@@ -147,6 +147,16 @@ TEST(League, VersionReturnsByWhatFollowsItsReplacement) {
       records.league().replaced_at = 64 * length;
     }
     EXPECT_EQ(records.obstacle(), obstacle);
+  }
+}
+
+TEST(League, VersionThatWasReplacedHasTheSameShareWhereverItsWindowBegins) {
+  for (const Time window : {2 * cycle, 12 * cycle}) {
+    Records records(100);
+    records.champion(varying(0.02), 40).challenger(varying(0.02), 30, window);
+    records.league().replaced = 2;
+    records.league().replaced_at = 40 * length;
+    EXPECT_NEAR(records.findings()[0].log_threshold, std::log(2 / 0.05 / 0.25), 1e-9);
   }
 }
 
