@@ -12,11 +12,8 @@
 namespace reident {
 namespace {
 
-using identification::dependence;
 using identification::Index;
 using identification::InputRanges;
-using identification::log_wealth;
-using identification::lower_mean;
 using identification::ScoreSeries;
 using storage::Block;
 using storage::BlockScore;

@@ -12,10 +12,7 @@
 namespace reident {
 namespace {
 
-using identification::dependence;
 using identification::Index;
-using identification::log_wealth;
-using identification::lower_mean;
 using identification::ScoreSeries;
 using storage::BlockScore;
 using storage::Time;
@@ -86,11 +83,14 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
 }
 
 /// R3. What is left without an offset has to be enough, whichever sensor's it is. What one does in
-/// derived inputs is known to the first order alone.
+/// derived inputs is known to the first order alone. The version that the champion replaced has
+/// learnt nothing from what it is compared on, but the champion may have learnt a bias that ended.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
   const League& league = standard.league;
-  if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty()) return std::nullopt;
+  if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty() ||
+      member.version == league.replaced)
+    return std::nullopt;
   std::string suspects;
   finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
   const auto suspect = [&](const std::string& sensor, const OffsetFit& offset) {

@@ -87,7 +87,7 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
   // Where it was asked and holds, the wealth without an offset is above the threshold (Judge).
   if (place > bias && limits.bias == BiasPolicy::wait &&
       finding.wealth_without_offset <= finding.log_threshold)
-    conditions[bias].found = "not asked: relations bind the sensors";
+    conditions[bias].found = "not asked: relations bind the sensors, or it ran before";
   return conditions;
 }
 

@@ -116,6 +116,13 @@ TEST(Bias, VersionThatIsBetterByAConstantMostOfAllWaits) {
 }
 
 // An offset that was another in each cycle would explain whatever a poor model errs.
+TEST(Bias, VersionThatRanBeforeReturnsAlsoWhereTheChampionErrsByAConstant) {
+  Records records = better_by_a_constant();
+  ASSERT_EQ(records.obstacle(), Code::bias_unverified);
+  records.league().replaced = records.league().challengers[0].version;
+  EXPECT_EQ(records.obstacle(), std::nullopt);
+}
+
 TEST(Bias, ErrorsThatWanderAreNoOffset) {
   EXPECT_EQ(Records(400)
                 .champion([](int block) {
