@@ -113,7 +113,8 @@ def derived(figures):
          "version ran freely on the telemetry from its approval until the next one, of which nothing "
          "is excluded. Next to it are the version that it replaced, the outputs' means over its "
          "window, and a static regression of its window. All errors are MRSE in percent.",
-         "The bus voltage hardly moves, so that its mean is hard to beat there.")
+         "The bus voltage hardly moves, so that its mean is hard to beat there. The service says of its "
+         "champion that it fails (`champion_failed`), in log, status, overview and metrics.")
 def followed(figures):
     def error(row, of):
         return figure(row[of]["mrse_percent"]) if of in row else "-"
