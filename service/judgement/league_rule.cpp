@@ -139,15 +139,15 @@ double error_probability(const EquipmentConfig& limits) {
 
 double log_threshold(const League& league, const Member& member, Time since,
                      const EquipmentConfig& limits) {
-  constexpr double share_behind = 0.75;
-  const bool is_behind = member.version != league.replaced && member.window.begin >= since;
-  double k = is_behind ? 0 : 1;
+  constexpr double share_behind = 0.75, share_others = (1 - share_behind) * share_behind;
+  const double all = error_probability(limits);
+  if (member.version == league.replaced) return -std::log(all * (1 - share_behind - share_others));
+  const bool is_behind = member.window.begin >= since;
+  double k = 0;
   for (const storage::TimeRange& window : league.admitted)
-    if (member.version != league.replaced)
-      k += is_behind ? window.begin >= since && window.end <= member.window.end
-                     : window.begin < since && window.end >= member.window.end;
-  return std::log(std::max(1.0, k) * (k + 1) / error_probability(limits) /
-                  (is_behind ? share_behind : 1 - share_behind));
+    k += is_behind ? window.begin >= since && window.end <= member.window.end
+                   : window.begin < since && window.end >= member.window.end;
+  return std::log(std::max(1.0, k) * (k + 1) / all / (is_behind ? share_behind : share_others));
 }
 
 Finding judge_first(const League& league, const Member& member, const EquipmentConfig& limits) {

@@ -32,8 +32,9 @@ double error_probability(const EquipmentConfig& limits);
 
 /// Logarithm of the wealth that a member's bet has to reach. Versions that were identified wholly
 /// behind the last change, or from the champion's window on, come first: the k-th of them has a
-/// share 1 / (k (k + 1)) of three quarters of the error probability. Of the rest the k-th has such
-/// a share of the last quarter: first the one that the champion replaced, then the newest.
+/// share 1 / (k (k + 1)) of three quarters of the error probability. Of the others the k-th has
+/// such a share of three quarters of the rest, the newest first; what is left has the one that the
+/// champion replaced.
 double log_threshold(const League& league, const Member& member, storage::Time since,
                      const EquipmentConfig& limits);
 

@@ -34,7 +34,7 @@ CONSTANTS = [
      "0.125", "0.5"),
     ("reference", "identification/statistics/betting.hpp", "cycles_to_measure = {};", "8", "4", "16"),
     ("reach of a sensor", "service/judgement/scores.hpp", "deviations_of_sensor = {};", "3", "1.5", "6"),
-    ("share behind a change", "service/judgement/league_rule.cpp", "share_behind = {};", "0.75", "0.6",
+    ("share behind a change", "service/judgement/league_rule.cpp", "share_behind = {},", "0.75", "0.6",
      "6.0 / 7"),
 ]
 

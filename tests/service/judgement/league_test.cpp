@@ -156,7 +156,7 @@ TEST(League, VersionThatWasReplacedHasTheSameShareWhereverItsWindowBegins) {
     records.champion(varying(0.02), 40).challenger(varying(0.02), 30, window);
     records.league().replaced = 2;
     records.league().replaced_at = 40 * length;
-    EXPECT_NEAR(records.findings()[0].log_threshold, std::log(2 / 0.05 / 0.25), 1e-9);
+    EXPECT_NEAR(records.findings()[0].log_threshold, std::log(16 / 0.05), 1e-9);
   }
 }
 
