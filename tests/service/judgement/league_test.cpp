@@ -133,7 +133,7 @@ TEST(League, RegimesOfTheChampionsOwnWindowCount) {
 }
 
 TEST(League, VersionReturnsByWhatFollowsItsReplacement) {
-  // The champion was better for eleven cycles, by which it was chosen. Another regime is harder for it.
+  // The champion was better for the cycles by which it was chosen, and fails in another regime.
   const auto one = [](double before, double after) {
     return [=](int block) { return Error{0, varying(block < 64 ? before : after)(block).square}; };
   };
