@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "service/review/evidence.hpp"
+#include "service/model/reasons.hpp"
 #include "service/support/floor_divide.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
@@ -88,10 +88,8 @@ storage::TimeBins bins_of(const HttpRequest& request, storage::TimeRange range) 
 }
 
 storage::Time TelemetryClock::place_of(const storage::Decision& decision) {
-  const auto evidence = evidence_of(decision);
-  if (const auto until = evidence.find("until_ns");
-      until != evidence.end() && until->is_number_integer()) {
-    last_ = until->get<storage::Time>();
+  if (const auto until = judged_until(decision)) {
+    last_ = until;
   } else if (!extent_ || (decision.time >= extent_->begin && decision.time <= extent_->end)) {
     last_ = decision.time;
   } else if (!last_) {

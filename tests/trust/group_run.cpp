@@ -4,8 +4,6 @@
 #include <functional>
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "service/model/model_json.hpp"
 #include "service/model/reasons.hpp"
 #include "tests/trust/flight.hpp"
@@ -121,8 +119,7 @@ Made made_by(const SimulatedService& service) {
 
 /// Where the telemetry ends that an approval rests on: the version's window, or what came after it.
 storage::Time rests_until(const storage::Decision& decision, const storage::Version& version) {
-  const auto evidence = nlohmann::json::parse(decision.evidence_json, nullptr, false);
-  return evidence.is_object() ? evidence.value("until_ns", version.window.end) : version.window.end;
+  return judged_until(decision).value_or(version.window.end);
 }
 
 /// By a service whose clock was not the spacecraft's.

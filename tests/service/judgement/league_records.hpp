@@ -73,6 +73,10 @@ class Records {
   League& league() { return league_; }
   EquipmentConfig& limits() { return limits_; }
   std::vector<Finding> findings() const { return Judge(limits_).findings(league_); }
+  /// Those of the first challenger.
+  std::vector<Time> earlier_blocks() const {
+    return Judge(limits_).earlier_blocks(league_, league_.challengers[0]);
+  }
   /// The code of what is against the first challenger; nothing where it may become champion.
   std::optional<Code> obstacle() const {
     const auto found = findings().at(0).obstacle;

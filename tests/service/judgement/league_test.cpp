@@ -94,29 +94,21 @@ TEST(League, NewVersionIsToRunOnTheLastCyclesOfARegimeFromBeforeItsWindow) {
   Records records(100);
   records.swings(20, 60);
   records.champion(varying(0.02)).challenger(varying(0.01), 96, 4 * cycle);
-  const auto earlier = [&] {
-    return Judge(records.limits())
-        .earlier_blocks(records.league(), records.league().challengers[0]);
-  };
-  ASSERT_EQ(earlier().size(), cycles_before * blocks_of_cycle);
-  EXPECT_EQ(earlier().front(), (63 - 16) * length)
+  ASSERT_EQ(records.earlier_blocks().size(), cycles_before * blocks_of_cycle);
+  EXPECT_EQ(records.earlier_blocks().front(), (63 - 16) * length)
       << "three blocks behind are of a cycle with them";
-  EXPECT_EQ(earlier().back(), 62 * length);
+  EXPECT_EQ(records.earlier_blocks().back(), 62 * length);
 }
 
 TEST(League, NewVersionIsToRunOnTheRegimesThatItsWindowHasAndItsRecordDoesNot) {
   Records records(100);
   records.swings(70, 80);
   records.champion(varying(0.02)).challenger(varying(0.01), 92, 8 * cycle);
-  const auto earlier = [&] {
-    return Judge(records.limits())
-        .earlier_blocks(records.league(), records.league().challengers[0]);
-  };
-  ASSERT_FALSE(earlier().empty());
-  EXPECT_EQ(earlier().front(), 70 * length);
-  EXPECT_EQ(earlier().back(), 82 * length);
+  ASSERT_FALSE(records.earlier_blocks().empty());
+  EXPECT_EQ(records.earlier_blocks().front(), 70 * length);
+  EXPECT_EQ(records.earlier_blocks().back(), 82 * length);
   records.league().champion.reset();
-  EXPECT_EQ(earlier().size(), 32) << "a first version, on all of its window";
+  EXPECT_EQ(records.earlier_blocks().size(), 32) << "a first version, on all of its window";
 }
 
 TEST(League, RegimesOfTheChampionsOwnWindowCount) {
