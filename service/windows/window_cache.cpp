@@ -27,7 +27,7 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
   Record effect{inputs.period_s, Matrix::Zero(inputs.rows(), inputs.u.cols()),
                 Matrix(inputs.rows(), 1), inputs.segments};
   const std::vector<Index> moved = expressions.inputs_of(place);
-  Vector raw, above(std::ssize(moved)), below(std::ssize(moved));
+  Vector raw(samples.u.cols()), above(std::ssize(moved)), below(std::ssize(moved));
   for (const identification::Segment& segment : inputs.segments) {
     Index from = first_row_at(samples, segment.first_tick);
     for (Index row = segment.begin; row < segment.end; ++row, ++from) {
@@ -39,14 +39,17 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
         raw(place) = samples.u(from, place) + offset;
         for (std::size_t i = 0; i < moved.size(); ++i)
           found(Index(i)) = expressions.evaluate(raw, moved[i]);
-        if (found.allFinite())
+        if (found.allFinite()) {
           width += bias;
-        else
-          found = inputs.u(row, moved).transpose();
+          return;
+        }
+        for (std::size_t i = 0; i < moved.size(); ++i) found(Index(i)) = inputs.u(row, moved[i]);
       };
       move(bias, above);
       move(-bias, below);
-      if (width > 0) effect.u(row, moved) = (above - below).transpose() / width;
+      if (!(width > 0)) continue;
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        effect.u(row, moved[i]) = (above(Index(i)) - below(Index(i))) / width;
     }
   }
   return effect;
