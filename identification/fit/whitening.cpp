@@ -15,13 +15,16 @@ Matrix Whitener::white(const Eigen::Ref<const Matrix>& values) {
   if (before > 0) all.leftCols(before) = latest_;
   all.rightCols(count) = values;
   Matrix result = values;
-  for (Index t = 0; t < count; ++t) {
-    const Index known = std::min(past.order(), before + t);
+  const auto whiten = [&](Index begin, Index columns, Index known) {
     const auto k = static_cast<std::size_t>(known);
+    auto part = result.middleCols(begin, columns);
     for (Index i = 0; i < known; ++i)
-      result.col(t) -= past.coefficients[k](i) * all.col(before + t - 1 - i);
-    result.col(t) *= past.deviation.back() / (past.deviation[k] * colour_.deviation);
-  }
+      part -= past.coefficients[k](i) * all.middleCols(before + begin - 1 - i, columns);
+    part *= past.deviation.back() / (past.deviation[k] * colour_.deviation);
+  };
+  const Index first = std::clamp<Index>(past.order() - before, 0, count);
+  for (Index t = 0; t < first; ++t) whiten(t, 1, before + t);
+  whiten(first, count - first, past.order());
   latest_ = all.rightCols(std::min(past.order(), all.cols()));
   return result;
 }

@@ -84,7 +84,7 @@ void read_champion(const Registry& registry, const storage::Decision& made, cons
   if (!row.approved_error_percent)
     if (const auto attempt = registry.attempt(version->attempt))
       row.approved_error_percent = percent_in(attempt->evidence_json, "mrse_percent");
-  storage::Time record = version->window.begin;
+  storage::Time record = version->window.end;
   try {
     record = equipment_model_from_json(version->model_json).validated_on.begin;
     row.telemetry = complete_until(row.name.spacecraft, parameters_of(version->model_json), newest);
