@@ -10,7 +10,6 @@ namespace reident::identification {
 namespace {
 
 constexpr int preferred_horizons[] = {6, 10, 15, 20, 30};
-constexpr Index well_determined = 4;  // columns for each row of the factor
 
 }  // namespace
 
@@ -53,10 +52,10 @@ std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOpt
   for (const int horizon : preferred_horizons)
     if (horizon >= least && 2 * supply.columns(horizon) >= columns) horizons.push_back(horizon);
   if (!horizons.empty()) return horizons;
-  // Holes all over the rows: what is left need only determine the factor well, since it is where
-  // the refinement begins.
+  // Holes all over the rows: what is left need only determine the factor, since it is where the
+  // refinement begins.
   for (int horizon = *std::begin(preferred_horizons); horizon > least; --horizon)
-    if (supply.columns(horizon) >= well_determined * 2 * horizon * supply.width) return {horizon};
+    if (supply.columns(horizon) > 0) return {horizon};
   return {least};
 }
 

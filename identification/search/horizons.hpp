@@ -38,7 +38,7 @@ int horizon_of_order(int order, Index p);
 
 /// Returns the horizons of {6, 10, 15, 20, 30} that the rows can feed, ascending. A longer one must
 /// leave at least half of the columns that the shortest one has, since gaps cost columns. Where
-/// none does, the longest up to 6 that has four columns for each row of the factor; else the least.
+/// none does, the longest up to 6 that they can feed at all; else the least.
 std::vector<int> feasible_horizons(const HankelSupply& supply, const IdentifyOptions& options);
 
 }  // namespace reident::identification

@@ -201,18 +201,41 @@ TEST(Identify, GapsCostRowsAndNotAccuracy) {
   EXPECT_LT(test::markov_distance(found.model, truth), 1e-5);
 }
 
+/// The record without so many percent of its rows, at random.
+Record with_holes(const Record& record, unsigned percent, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<TickRange> holes;
+  for (Index row = 0; row < record.rows(); ++row)
+    if (random() % 100 < percent) holes.push_back({row, row + 1});
+  return without(record, united(std::move(holes)));
+}
+
 TEST(Identify, HolesAllOverTheRowsLeaveOrdersToChooseFrom) {
   test::Noise noise(23);
   const StateSpaceModel truth = test::random_system(noise, 2, 1, 1, 0.9);
-  Record record = test::excited(truth, noise, 6000, 0.01);
-  std::mt19937 random(4);
-  std::vector<TickRange> holes;
-  for (Index row = 0; row < record.rows(); ++row)
-    if (random() % 4 == 0) holes.push_back({row, row + 1});
-  record = without(record, united(std::move(holes)));
+  const Record record = with_holes(test::excited(truth, noise, 6000, 0.01), 25, 4);
   const Identified found = expect_model(record, record.all());
   EXPECT_EQ(found.model.order(), 2);
   EXPECT_LT(test::markov_distance(found.model, truth), 0.02);
+}
+
+TEST(Identify, HolesInFewRowsLeaveOrdersToChooseFrom) {
+  StateSpaceModel truth;
+  truth.A = Eigen::Vector2d(0.958, 0.546).asDiagonal();
+  truth.B = Matrix::Identity(2, 2);
+  truth.C = Matrix::Ones(1, 2);
+  truth.D = Matrix::Zero(1, 2);
+  truth.u0 = Vector::Zero(2);
+  truth.y0 = Vector::Zero(1);
+  truth.period_s = 1;
+  int right = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Record record = with_holes(test::excited(truth, noise, 300, 0.01), 15, seed);
+    const Identified found = expect_model(record, record.all());
+    right += found.model.order() == 2 ? 1 : 0;
+  }
+  EXPECT_GE(right, 9);
 }
 
 TEST(Identify, TheOrderOfSegmentsDoesNotMatterForAGivenChoice) {
