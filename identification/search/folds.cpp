@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
 
 namespace reident::identification {
@@ -87,6 +88,53 @@ double held_out_error_of_constant(const Record& record, const std::vector<Fold>&
     const Eigen::RowVectorXd mean =
         record.y.middleRows(fold.fit.begin, fold.fit.size()).colwise().mean();
     sum += rms(record.y.middleRows(fold.tune.begin, fold.tune.size()).rowwise() - mean);
+  }
+  return sum / double(folds.size());
+}
+
+double held_out_error_of_sums(const Record& record, const std::vector<Fold>& folds,
+                              const std::vector<double>& rates) {
+  constexpr Index most_rows = 1000;  // sums are slow: more rows say little more
+  const Index m = record.u.cols(), stride = (record.rows() + most_rows - 1) / most_rows;
+  const auto thinned = [stride](RowRange rows) {
+    return RowRange{(rows.begin + stride - 1) / stride, (rows.end + stride - 1) / stride};
+  };
+  const Index rows = thinned(record.all()).end;
+  const auto count = static_cast<Index>(rates.size());
+  Matrix columns(rows, 2 + m + count * (m + 1)), outputs(rows, record.y.cols());
+  Matrix sums = Matrix::Zero(count, m + 1);  // the last column for what decays without inputs
+  sums.col(m).setOnes();
+  const Vector mean = record.u.colwise().mean().transpose();
+  const auto advance = [&](Index row, double ticks) {
+    for (Index i = 0; i < count; ++i) {
+      const double rate = rates[static_cast<std::size_t>(i)];
+      sums.row(i) *= std::exp(-rate * ticks);
+      const double held = rate > 0 ? -std::expm1(-rate * ticks) / rate : ticks;
+      sums.row(i).head(m) += held * (record.u.row(row) - mean.transpose());
+    }
+  };
+  const double length = double(record.segments.back().first_tick + record.segments.back().size() -
+                               record.segments.front().first_tick);
+  std::int64_t before = record.segments.front().first_tick;
+  for (const Segment& segment : record.segments)
+    for (Index row = segment.begin; row < segment.end; ++row) {
+      const std::int64_t tick = segment.first_tick + (row - segment.begin);
+      if (row > 0) advance(row - 1, double(tick - before));
+      before = tick;
+      if (row % stride != 0) continue;
+      const Index k = row / stride;
+      columns.row(k) << 1, double(tick - record.segments.front().first_tick) / length,
+          record.u.row(row), sums.reshaped().transpose();
+      outputs.row(k) = record.y.row(row);
+    }
+  double sum = 0;
+  for (const Fold& fold : folds) {
+    const RowRange fit = thinned(fold.fit), tune = thinned(fold.tune);
+    if (fit.size() == 0 || tune.size() == 0) return std::numeric_limits<double>::infinity();
+    const Matrix theta = solve_pivoted_qr(Matrix(columns.middleRows(fit.begin, fit.size())),
+                                          Matrix(outputs.middleRows(fit.begin, fit.size())));
+    sum += rms(outputs.middleRows(tune.begin, tune.size()) -
+               columns.middleRows(tune.begin, tune.size()) * theta);
   }
   return sum / double(folds.size());
 }

@@ -57,6 +57,12 @@ HeldOutErrors quick_held_out_errors(const StateSpaceModel& model, const Record& 
 /// Returns the error of the mean of the fitted rows as a model, mean over the folds.
 double held_out_error_of_constant(const Record& record, const std::vector<Fold>& folds);
 
+/// Returns the mean over the folds of the error of a regression on a straight line in time, the
+/// inputs, and their sums from the first row on, which decay by each of the `rates` [1/row], 0 or
+/// above. Inputs are held over holes. Of long records it takes every so manieth row.
+double held_out_error_of_sums(const Record& record, const std::vector<Fold>& folds,
+                              const std::vector<double>& rates);
+
 /// Returns the mean residual (p) of a fit over the last half (`towards_end`) or the first half of
 /// its rows: what its y0 is moved by to the recent operating point.
 Vector recent_operating_point(const Matrix& residuals, bool towards_end);

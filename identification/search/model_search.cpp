@@ -21,6 +21,7 @@ namespace {
 constexpr double equal_errors = 1.002;
 constexpr double no_error = 1e-6;  // of an output's deviation
 constexpr double worthwhile_recency = 0.95;
+constexpr double foretold = 0.5;  // of the error without slow modes
 constexpr int refinement_steps = 25;
 constexpr Index least_scored = 1000,
                 most_scored = 2000;  // rows of a fold in the first stage
@@ -245,7 +246,11 @@ bool Search::shows_slow_modes(const std::vector<Candidate>& compressed) const {
   const Dynamics fast = without_slow_modes({model.A, model.C}, 2 * least_rate_);
   const Response fit =
       fit_response(fast.A, fast.C, candidate.recipe.direct, data_.normalised, rows, Accuracy::fast);
-  return drives_slow_modes(fit, data_.normalised, rows, least_rate_ / 2);
+  if (drives_slow_modes(fit, data_.normalised, rows, least_rate_ / 2)) return true;
+  // Errors that are sums of the inputs can look like a drift. No drift is foretold.
+  const double line = held_out_error_of_sums(data_.normalised, data_.folds, {});
+  const double sums = held_out_error_of_sums(data_.normalised, data_.folds, {0, least_rate_});
+  return sums < foretold * std::min(line, compressed.front().error);
 }
 
 HeldOutErrors Search::errors_on(const Candidate& candidate, std::size_t fold_index,

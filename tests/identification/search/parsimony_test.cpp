@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/search/folds.hpp"
 #include "identification/search/identify.hpp"
 #include "tests/support/systems.hpp"
 
@@ -279,6 +280,71 @@ TEST(Parsimony, ADriftIsTakenForASlowModeAsOftenAsChanceSays) {
   }
   EXPECT_LE(drifts, 5);
   EXPECT_GE(modes, 99);
+}
+
+/// A sum of an input in steps of random heights, or a random walk beside it.
+Record summed_or_walking(test::Noise& noise, bool is_sum) {
+  const Matrix u = noise.normal(16, 1).replicate(1, 30).transpose().reshaped(480, 1);
+  Matrix y(480, 1);
+  double x = 0;
+  for (Index t = 0; t < y.rows(); ++t) {
+    y(t) = 50 + x;
+    x += is_sum ? u(t) : noise.normal();
+  }
+  const double deviation = std::sqrt((y.array() - y.mean()).square().mean());
+  return contiguous_record(1, u, y + 0.02 * deviation * noise.normal(480, 1));
+}
+
+TEST(Parsimony, NoDriftIsForetoldBySumsOfTheInputs) {
+  constexpr int records = 100;
+  int drifts = 0, sums = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    const auto is_foretold = [&](bool is_sum) {
+      test::Noise noise(seed);
+      const Record record = summed_or_walking(noise, is_sum);
+      const std::vector<Fold> folds = folds_of(record.rows(), 0.3);
+      return held_out_error_of_sums(record, folds, {0, 6.28 / 480}) <
+             0.5 * held_out_error_of_sums(record, folds, {});
+    };
+    drifts += is_foretold(false);
+    sums += is_foretold(true);
+  }
+  EXPECT_LE(drifts, 5);
+  EXPECT_GE(sums, 99);
+  RecordProperty("drifts", std::to_string(drifts));
+  RecordProperty("sums", std::to_string(sums));
+}
+
+/// The charge that an array of 5 A in sunlight, in seven orbits of 95 rows, a bus load in steps and
+/// a constant one that nobody measures leave in a battery.
+Record charged(test::Noise& noise) {
+  constexpr Index rows = 665, in_sun = 59, orbit = 95;
+  const auto phase = static_cast<Index>(orbit * std::abs(noise.normal()));
+  Matrix u(rows, 2), y(rows, 1);
+  const double unmeasured = 2 * noise.normal();
+  double charge = 50, load = 0;
+  for (Index t = 0; t < rows; ++t) {
+    if (t == 0 || noise.normal() > 1.645) load = 3.1 + 0.17 * noise.normal();
+    u.row(t) << load, (t + phase) % orbit < in_sun ? 5.0 : 0.0;
+    y(t) = charge;
+    charge += u(t, 1) - u(t, 0) - unmeasured;
+  }
+  const double deviation = std::sqrt((y.array() - y.mean()).square().mean());
+  return contiguous_record(1, u, y + 0.01 * deviation * noise.normal(rows, 1));
+}
+
+TEST(Parsimony, AnIntegratorIsNoStaticGain) {
+  const std::uint64_t records = records_asked();
+  std::uint64_t right = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const Record record = charged(noise);
+    const auto found = identify(record, {0, 443}, {});
+    const auto* model = std::get_if<Identified>(&found);
+    right += model && model->recipe.order == 1 && model->spectral_radius > 0.999;
+  }
+  EXPECT_GE(right, records * 19 / 20);
+  RecordProperty("right", std::to_string(right));
 }
 
 TEST(Parsimony, AModeThatStandsForADriftIsSaid) {
