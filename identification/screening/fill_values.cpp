@@ -57,18 +57,56 @@ bool stands_for_none(double value, Index count, double low, double high) {
          (is_of_nines(std::abs(value)) || is_end_of_integers(value));
 }
 
-/// Whether another channel jumps at most of these plateaus: they may be what the equipment does.
+/// The rows that no plateau has.
+std::vector<bool> rows_elsewhere(Index rows, const std::vector<Plateau>& plateaus) {
+  std::vector<bool> is_elsewhere(static_cast<std::size_t>(rows), true);
+  for (const Plateau& one : plateaus)
+    std::fill(is_elsewhere.begin() + one.begin, is_elsewhere.begin() + one.end, false);
+  return is_elsewhere;
+}
+
+/// Whether so many of `count` are more than chance gives in 99 of 100 cases, by Chernoff's bound
+/// of the binomial distribution.
+bool are_more_than_chance(double found, double count, double chance) {
+  const double share = found / count;
+  if (share <= chance || chance >= 1) return false;
+  const auto part = [](double of, double than) { return of > 0 ? of * std::log(of / than) : 0; };
+  return chance == 0 || count * (part(share, chance) + part(1 - share, 1 - chance)) > std::log(100);
+}
+
+/// Whether another channel jumps at most of these plateaus, and more often than in as many rows
+/// elsewhere: they may be what the equipment does. It may jump anywhere within, or at both ends.
 bool another_jumps(const Witnesses& witnesses, const std::vector<Plateau>& plateaus) {
   const std::vector<Channel>& channels = witnesses.channels;
+  const Index all = channels[witnesses.self].values.size();
+  const auto length = static_cast<Index>(median_size(plateaus));
+  const std::vector<bool> is_elsewhere = rows_elsewhere(all, plateaus);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == witnesses.self) continue;
-    const Vector& values = channels[c].values;
-    const auto jumps = std::count_if(plateaus.begin(), plateaus.end(), [&](const Plateau& at) {
-      return witnesses.saw(c, at) &&
-             movement(values, std::max<Index>(at.begin - 1, 0),
-                      std::min<Index>(at.end + 1, values.size())) > channels[c].least_jump;
-    });
-    if (double(jumps) > jumps_together * double(plateaus.size())) return true;
+    const auto moves = [&](Index begin, Index end) {
+      return movement(channels[c].values, std::max<Index>(begin, 0), std::min(end, all)) >
+             channels[c].least_jump;
+    };
+    const auto jumps = [&](Index begin, Index end) { return moves(begin - 1, end + 1); };
+    const auto jumps_at_ends = [&](Index begin, Index end) {
+      return moves(begin - 1, begin + 1) && moves(end - 1, end + 1);
+    };
+    const auto confirms = [&](const auto& predicate) {
+      double found = 0, chances = 0, by_chance = 0;
+      for (const Plateau& at : plateaus)
+        found += witnesses.saw(c, at) && predicate(at.begin, at.end) ? 1 : 0;
+      if (found <= jumps_together * double(plateaus.size())) return false;
+      Index clear = 0;  // rows elsewhere that end here
+      for (Index end = 0; end < all; ++end) {
+        clear = is_elsewhere[static_cast<std::size_t>(end)] ? clear + 1 : 0;
+        if (clear < length + 2) continue;
+        ++chances;
+        by_chance += predicate(end - length, end) ? 1 : 0;
+      }
+      return are_more_than_chance(found, double(plateaus.size()),
+                                  chances > 0 ? by_chance / chances : 0);
+    };
+    if (confirms(jumps) || confirms(jumps_at_ends)) return true;
   }
   return false;
 }
@@ -80,9 +118,7 @@ bool another_turns(const Witnesses& witnesses, const std::vector<Plateau>& plate
   const std::size_t self = witnesses.self;
   const auto rows = static_cast<Index>(median_size(plateaus)) + 1;
   const Index all = channels[self].values.size();
-  std::vector<bool> is_away(static_cast<std::size_t>(all));
-  for (const Plateau& one : plateaus)
-    std::fill(is_away.begin() + one.begin, is_away.begin() + one.end, true);
+  const std::vector<bool> is_elsewhere = rows_elsewhere(all, plateaus);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == self || !(channels[c].range() > 0)) continue;
     const Vector& values = channels[c].values;
@@ -98,7 +134,7 @@ bool another_turns(const Witnesses& witnesses, const std::vector<Plateau>& plate
       ++count;
     }
     for (Index row = rows; row + rows < all; ++row) {
-      if (is_away[static_cast<std::size_t>(row + 1)]) continue;
+      if (!is_elsewhere[static_cast<std::size_t>(row + 1)]) continue;
       squares += std::pow(turn_at(row, rows), 2);
       ++elsewhere;
     }
