@@ -26,7 +26,7 @@ constexpr Index least_repeated = 5;
 constexpr double more_often = 5, exact_share = 0.9;
 // Plateaus of more than twice the usual length: their rows, their share of all rows, and the
 // deviations by which another channel turns at them, as at what the equipment does.
-constexpr double longest_scattered = 30, most_scattered_rows = 0.1, turned_deviations = 4;
+constexpr double longest_scattered = 30, most_scattered_rows = 0.25, turned_deviations = 4;
 
 bool is_of_nines(double magnitude) {
   for (double nines = 99; nines < 1e16; nines = 10 * nines + 9)

@@ -63,22 +63,25 @@ bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& 
 }
 
 /// Whether the channel rests at an end of its range, with hardly a row beyond, and does not vary
-/// there at other times.
+/// there at other times. Where noise lets it rest nowhere else, hardly a row may have another value
+/// there: a sensor that is stuck near an end has seen more.
 bool rests_at_end_of_range(const Channel& channel, const std::vector<Plateau>& plateaus,
-                           const Plateau& plateau) {
+                           const Plateau& plateau, bool rests_nowhere_else) {
   const double near = end_share * channel.range();
+  const double few = beyond_share * double(plateau.size());
   const auto rests_at = [&](double outwards) {  // 1: the high end
     Index beyond = 0, rows = 0, longest = 0;
     for (const Plateau& other : plateaus) {
       if (other.begin == plateau.begin && other.segment == plateau.segment) continue;
       const double further = outwards * (other.value - plateau.value);
-      if (further > near) beyond += other.size();
-      if (std::abs(further) > near) continue;
+      if (further > (rests_nowhere_else ? 0 : near)) beyond += other.size();
+      if (std::abs(further) > near || (rests_nowhere_else && further == 0)) continue;
       rows += other.size();
       longest = std::max(longest, other.size());
     }
-    return double(beyond) <= beyond_share * double(plateau.size()) &&
-           (rows < plateau.size() || double(longest) >= repeated_share * double(plateau.size()));
+    const double most_there = rests_nowhere_else ? few : double(plateau.size());
+    return double(beyond) <= few && (double(rows) < most_there ||
+                                     double(longest) >= repeated_share * double(plateau.size()));
   };
   return rests_at(-1) || rests_at(1);
 }
@@ -121,7 +124,7 @@ std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::s
   const bool never_rested = never_rests(channel, longest);
   std::vector<Plateau> stuck;
   for (const Plateau& plateau : longest)
-    if (!rests_at_end_of_range(channel, plateaus, plateau) &&
+    if (!rests_at_end_of_range(channel, plateaus, plateau, never_rested) &&
         !is_repeated_elsewhere(plateaus, plateau) &&
         (never_rested || another_moves(channels, self, plateau)))
       stuck.push_back(plateau);

@@ -378,6 +378,60 @@ TEST(Screening, FindsAFrozenStretchAtAnEndWhereTheSensorIsNoisyAtOtherTimes) {
   EXPECT_NEAR(double(found[0].end), double(begin + 40), 3);
 }
 
+/// A load in levels from 2 to 7 A that hold some 8 rows, with noise, and a bus that answers it.
+struct SteppedLoad {
+  Record record{1, Matrix(700, 1), Matrix(700, 1), {{0, 700, 0}}};
+  std::mt19937 random;
+
+  explicit SteppedLoad(unsigned seed) : random(seed) {
+    std::normal_distribution<double> noise;
+    std::uniform_real_distribution<double> level(2, 7);
+    double load = level(random), state = 0;
+    for (Index t = 0; t < 700; ++t) {
+      if (random() % 8 == 0) load = level(random);
+      record.u(t) = quantised(load + 0.01 * noise(random), 0.001);
+      record.y(t) = quantised(28.2 - state + 0.01 * noise(random), 0.001);
+      state += 0.07 * (0.25 * load - state);
+    }
+  }
+  TickSet found(SensorFaultKind kind, Index channel) const {
+    return ticks_of(sensor_faults(record, {true, true}), kind, channel);
+  }
+};
+
+TEST(Screening, FindsABusAtZeroInStretchesWhileTheLoadStepsAllTheTime) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    std::vector<TickRange> zeros;
+    for (const Index begin : {60, 230, 240, 410, 633}) {
+      const auto rows = static_cast<Index>(6 + telemetry.random() % 7);
+      telemetry.record.y.middleRows(begin, rows).setZero();
+      zeros.push_back({begin, begin + rows});
+    }
+    right += telemetry.found(SensorFaultKind::fill, 1) == united(std::move(zeros));
+  }
+  EXPECT_GE(right, 19);
+}
+
+TEST(Screening, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    telemetry.record.u.middleRows(300, 48).setConstant(6.8);
+    right += size(telemetry.found(SensorFaultKind::stuck, 0)) == 48;
+  }
+  EXPECT_GE(right, 19);
+}
+
+TEST(Screening, LeavesANoisySensorThatIsSaturatedForLongOnce) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    telemetry.record.u.middleRows(300, 48).setConstant(7.5);
+    EXPECT_TRUE(telemetry.found(SensorFaultKind::stuck, 0).empty()) << seed;
+  }
+}
+
 TEST(Screening, LeavesAPanelThatHasNothingToShowInEclipse) {
   Telemetry telemetry;
   // The least value differs by a digit from eclipse to eclipse.
