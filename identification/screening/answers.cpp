@@ -23,6 +23,7 @@ constexpr Index most_fitted = 4000, most_elsewhere = 1000, least_elsewhere = 50;
 constexpr double ridge = 1e-9;
 constexpr std::size_t most_draws = 1000, least_draws = 200, most_drawn = 64'000;
 constexpr double clearly = 1.5;
+constexpr double surely = 6;  // standard errors
 
 using Errors = std::array<double, window_rows>;
 
@@ -46,6 +47,9 @@ class Predictions {
     return fitted_ > 2 * weights_.size() && std::ssize(elsewhere_) >= least_elsewhere;
   }
   void predict(std::size_t channel);
+  /// Whether the channel that is predicted surely depends on the one of the excursions: one that is
+  /// quiet otherwise does not show what an excursion of it does.
+  bool know_excursions() const { return know_excursions_; }
   /// Errors around an excursion, without it or with it; absent next to an end of the segment.
   std::optional<Errors> errors_around(const Plateau& excursion, bool without);
   /// Errors in places that have no excursion nearby.
@@ -72,6 +76,7 @@ class Predictions {
   std::vector<Index> elsewhere_;
   Matrix gram_;
   Vector weights_, described_;
+  bool know_excursions_ = false;
 };
 
 Predictions::Predictions(const Witnesses& witnesses, const std::vector<Excursion>& excursions)
@@ -129,6 +134,16 @@ void Predictions::predict(std::size_t channel) {
   const std::array<Index, 1> one{target};
   weights_(others) = -solve_ldlt_on_right(gram_(one, others), gram_(others, others)).row(0);
   weights_(target) = 1;
+  const double variance = weights_.dot(gram_ * weights_) / double(fitted_);
+  know_excursions_ = false;
+  for (Index back = 0; back < predicting_rows; ++back) {
+    const Index place = predicting_rows * static_cast<Index>(self_) + back;
+    Matrix unit = Matrix::Zero(1, std::ssize(others));
+    unit(0, place - (place > target ? 1 : 0)) = 1;
+    const double inverse = solve_ldlt_on_right(unit, gram_(others, others)).row(0).dot(unit.row(0));
+    if (std::pow(weights_(place), 2) > std::pow(surely, 2) * variance * inverse)
+      know_excursions_ = true;
+  }
 }
 
 std::optional<Errors> Predictions::errors_around(const Plateau& excursion, bool without) {
@@ -189,7 +204,7 @@ std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excurs
     double largest = 0;
     for (const Errors& errors : elsewhere) largest = std::max(largest, squared(errors));
     std::vector<double> heights;
-    Errors sum{};
+    Errors sum{}, sum_with{};
     std::erase_if(excursions, [&](const Excursion& one) {
       if (!witnesses.saw(c, one.plateau)) return false;
       const auto errors = predictions.errors_around(one.plateau, true);
@@ -198,10 +213,13 @@ std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excurs
       const auto with = predictions.errors_around(one.plateau, false);
       if (squared(*errors) > clearly * std::max(largest, squared(*with))) return true;
       add(one.height, *errors, sum);
+      add(one.height, *with, sum_with);
       heights.push_back(one.height);
       return false;
     });
-    if (squared(sum) > clearly * largest_sum(heights, elsewhere))
+  const bool errs_more_with =
+        predictions.know_excursions() && squared(sum_with) > clearly * squared(sum);
+    if (squared(sum) > clearly * largest_sum(heights, elsewhere) && !errs_more_with)
       std::erase_if(excursions,
                     [&](const Excursion& one) { return witnesses.saw(c, one.plateau); });
   }

@@ -424,6 +424,20 @@ TEST(Screening, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
   EXPECT_GE(right, 19);
 }
 
+TEST(Screening, FindsAnImpossibleInputWhereItSteps) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    SteppedLoad telemetry(seed);
+    auto& load = telemetry.record.u;
+    Index row = 100;
+    while (std::abs(load(row) - load(row - 1)) < 2) ++row;
+    load(row) = 480;
+    const TickSet found = telemetry.found(SensorFaultKind::spike, 0);
+    right += std::ranges::count(found, TickRange{row, row + 1}) > 0;
+  }
+  EXPECT_GE(right, 49);
+}
+
 TEST(Screening, LeavesANoisySensorThatIsSaturatedForLongOnce) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SteppedLoad telemetry(seed);
