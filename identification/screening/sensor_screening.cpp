@@ -94,8 +94,9 @@ std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bo
       find(SensorFaultKind::fill, [&](std::size_t c) { return scattered_fills(channels, c); }));
   const auto bursts = noise_bursts(channels, record());
   const auto noise = find(SensorFaultKind::noise, [&](std::size_t c) { return bursts[c]; });
-  take_out(
-      find(SensorFaultKind::stuck, [&](std::size_t c) { return stuck_plateaus(channels, c); }));
+  take_out(find(SensorFaultKind::stuck, [&](std::size_t c) {
+    return stuck_plateaus(channels, c, static_cast<std::size_t>(whole.u.cols()));
+  }));
   add(find(SensorFaultKind::spike, [&](std::size_t c) { return spikes_of(channels, c); }));
   add(noise);
   std::stable_sort(faults.begin(), faults.end(), [](const SensorFault& a, const SensorFault& b) {

@@ -17,31 +17,43 @@ constexpr double repeated_share = 1.0 / 3;
 constexpr double end_share = 0.02;
 /// Rows beyond an end, of those that rest at it: a spike there makes no new end.
 constexpr double beyond_share = 0.1;
-/// What another channel moves meanwhile, as a share of its range; or as usual over as many rows.
+/// What another channel moves meanwhile, as a share of its range; or as usual over as many rows
+/// elsewhere.
 constexpr double moving_share = 0.1;
 constexpr Index windows = 50;
+constexpr double quiet = 0.25;  // of these windows
+/// Rows at least that an output settles for when its inputs have come to rest.
+constexpr Index least_settling = 5;
 /// The samples that differ from the one before, of a channel whose noise never lets it rest.
 constexpr double restless_share = 0.9;
 
-/// What the channel moves over so many rows, in the quieter quarter of the record.
-double quiet_movement(const Channel& channel, Index rows) {
-  const Index total = channel.values.size();
+/// The rows in the middle of a plateau: where it began and ended, another channel stood still for
+/// other reasons.
+RowRange middle_of(const Plateau& plateau) {
+  const Index begin = plateau.begin + plateau.size() / 4;
+  return {begin, begin + plateau.size() / 2};
+}
+
+/// What the channel moves over so many rows, in places outside of the plateau; may be empty.
+std::vector<double> movements_elsewhere(const Channel& channel, Index rows,
+                                        const Plateau& plateau) {
   std::vector<double> movements;
   for (Index i = 0; i < windows; ++i) {
-    const Index begin = (total - rows) * i / (windows - 1);
-    movements.push_back(movement(channel.values, begin, begin + rows));
+    const Index begin = (channel.values.size() - rows) * i / (windows - 1);
+    if (begin >= plateau.end || begin + rows <= plateau.begin)
+      movements.push_back(movement(channel.values, begin, begin + rows));
   }
-  return quantile(movements, 0.25);
+  return movements;
 }
 
 bool another_moves(const std::vector<Channel>& channels, std::size_t self, const Plateau& plateau) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (c == self || !channels[c].is_analog) continue;
-    // Its middle: where it began and ended, the channel stood still for other reasons.
-    const Index begin = plateau.begin + plateau.size() / 4, rows = plateau.size() / 2;
-    const double moved = movement(channels[c].values, begin, begin + rows);
+    const auto [begin, end] = middle_of(plateau);
+    const double moved = movement(channels[c].values, begin, end);
     if (moved > moving_share * channels[c].range()) return true;
-    if (moved > 0 && moved >= quiet_movement(channels[c], rows)) return true;
+    const auto elsewhere = movements_elsewhere(channels[c], end - begin, plateau);
+    if (moved > 0 && !elsewhere.empty() && moved >= quantile(elsewhere, quiet)) return true;
   }
   return false;
 }
@@ -52,6 +64,39 @@ bool never_rests(const Channel& channel, const std::vector<Plateau>& plateaus) {
   Index rest = channel.values.size();
   for (const Plateau& one : plateaus) rest -= one.size();
   return double(channel.steps) >= restless_share * double(rest);
+}
+
+/// Whether the channel moves in the middle of the plateau, and less than half of what it does over
+/// as many rows anywhere else.
+bool is_unusually_quiet(const Channel& channel, const Plateau& plateau) {
+  const auto [begin, end] = middle_of(plateau);
+  const double moved = movement(channel.values, begin, end);
+  const auto elsewhere = movements_elsewhere(channel, end - begin, plateau);
+  return moved > 0 && !elsewhere.empty() &&
+         moved < 0.5 * *std::min_element(elsewhere.begin(), elsewhere.end());
+}
+
+/// Whether the equipment is at rest: all inputs stand still, and the outputs are quieter than they
+/// ever are, or came to rest after that. A sensor that is stuck changes nothing in the other
+/// channels, and rows that are held begin in all of them at once.
+bool is_at_rest(const std::vector<Channel>& channels, std::size_t self, std::size_t inputs,
+                const Plateau& plateau) {
+  const Index settling = std::max<Index>(least_settling, plateau.size() / 10);
+  const auto is_still = [](const Channel& channel, Index begin, Index end) {
+    return movement(channel.values, begin, end) == 0;
+  };
+  const auto outputs = channels.begin() + static_cast<std::ptrdiff_t>(inputs);
+  if (self < inputs)
+    return std::all_of(outputs, channels.end(), [&](const Channel& output) {
+      const auto [begin, end] = middle_of(plateau);
+      const bool rests = is_still(output, begin, end) &&
+                         !is_still(output, plateau.begin + 1, plateau.begin + settling);
+      return rests || is_unusually_quiet(output, plateau);
+    });
+  const Index before = plateau.begin - settling;
+  return inputs > 0 && before >= (*channels[self].segments)[plateau.segment].begin &&
+         std::all_of(channels.begin(), outputs,
+                     [&](const Channel& input) { return is_still(input, before, plateau.end); });
 }
 
 bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {
@@ -116,7 +161,8 @@ std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Pl
 
 }  // namespace
 
-std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self) {
+std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self,
+                                    std::size_t inputs) {
   const Channel& channel = channels[self];
   if (channel.longest_repeat < least_stuck_rows) return {};
   const std::vector<Plateau> plateaus = channel.plateaus();
@@ -126,7 +172,8 @@ std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::s
   for (const Plateau& plateau : longest)
     if (!rests_at_end_of_range(channel, plateaus, plateau, never_rested) &&
         !is_repeated_elsewhere(plateaus, plateau) &&
-        (never_rested || another_moves(channels, self, plateau)))
+        (never_rested ? !is_at_rest(channels, self, inputs, plateau)
+                      : another_moves(channels, self, plateau)))
       stuck.push_back(plateau);
   std::sort(stuck.begin(), stuck.end(),
             [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });

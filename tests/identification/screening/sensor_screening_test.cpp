@@ -424,6 +424,22 @@ TEST(Screening, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
   EXPECT_GE(right, 19);
 }
 
+TEST(Screening, LeavesInputsAndOutputsThatCameToRest) {
+  for (const double noise : {0.0, 0.02})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> normal;
+      Record record{1, 3 * Matrix::Random(400, 2), Matrix(400, 1), {{0, 400, 0}}};
+      record.u.bottomRows(150).rowwise() = record.u.row(250).eval();
+      double state = 0;
+      for (Index t = 0; t < 400; ++t) {
+        record.y(t) = quantised(5 + state + noise * normal(random), 0.001);
+        state = 0.7 * state + record.u(t, 0) + 0.3 * record.u(t, 1);
+      }
+      EXPECT_TRUE(sensor_faults(record, {true, true, true}).empty()) << noise << " " << seed;
+    }
+}
+
 TEST(Screening, FindsAnImpossibleInputWhereItSteps) {
   int right = 0;
   for (unsigned seed = 1; seed <= 50; ++seed) {
