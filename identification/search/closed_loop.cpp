@@ -25,6 +25,7 @@ constexpr double certain_spreads = 2;
 /// where it explains all, there is none.
 constexpr double dominant_share = 0.5, whole_share = 0.98;
 constexpr double equal_responses = 0.1;  // relative difference
+constexpr double far_more = 3;           // of the responses to a step
 constexpr double least_growth = 10;      // logarithm, over the rows: an integrator drifts by less
 
 /// The gain from an input to an output at rest; 0 where it has no meaning.
@@ -163,6 +164,19 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     const Index after = looked_at.size() / 10;
     const double own = step_response(identified.model, output, input, after);
     const double of_loop = unit * step_response(loops.front().model, one.output, one.input, after);
+    const bool is_far_less = std::all_of(loops.begin(), loops.end(), [&](const LoopModel& loop) {
+      const double response = unit * step_response(loop.model, one.output, one.input, after);
+      return response * of_loop > 0 && std::abs(response) > far_more * std::abs(own);
+    });
+    if (is_far_less)
+      return Verdict{VerdictCode::closed_loop,
+                     "closed loop: " + who + "; a step of " + rows.input_name(input) +
+                         " would move " +
+                         channel_name("output", output, rows.options().output_names) + " by " +
+                         four_digits(own) + " in " + std::to_string(after) + " rows, and by " +
+                         four_digits(of_loop) +
+                         " by a method for closed loops: the model is the controller's; take what "
+                         "drives the loop, such as its reference, as the input"};
     agree = agree && std::abs(own - of_loop) <= equal_responses * std::abs(own);
     sensors += (sensors.empty() ? "the sensor of " : " or that of ") + rows.input_name(input);
     compared += "; in this model " + channel_name("output", output, rows.options().output_names) +

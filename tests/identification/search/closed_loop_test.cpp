@@ -110,6 +110,27 @@ TEST(ClosedLoop, AThermostatIsToldWithBothResponses) {
   EXPECT_GE(told, 7);
 }
 
+TEST(ClosedLoop, AModelWithAFractionOfTheHeatersEffectIsRefused) {
+  constexpr int records = 20;
+  constexpr Index rows = 150;  // of the step
+  const double truth = 20 * (1 - std::exp(-1));
+  int misleading = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const Record record = thermostat(noise, 1500);
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* found = std::get_if<Identified>(&result);
+    if (!found) continue;
+    StateSpaceModel model = found->model;
+    model.u0.setZero();
+    model.y0.setZero();
+    const Matrix step = test::simulated(model, Matrix::Ones(rows, 1), Vector::Zero(model.order()));
+    misleading += step(rows - 1) < truth / 4;
+  }
+  EXPECT_LE(misleading, 2);
+  RecordProperty("misleading", misleading);
+}
+
 /// The environment swings by a quarter of what the heater adds at rest, unmeasured. The heater is
 /// never on for long, so that the rows show what a step of it begins and not where it ends.
 Record thermostat_in_swings(test::Noise& noise, Index rows, double swing_rows) {

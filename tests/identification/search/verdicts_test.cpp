@@ -46,7 +46,7 @@ TEST(Verdicts, AnOrderThatTheRowsDoNotFeedIsNamed) {
   const auto warnings = [](Index rows) {
     return std::get<Identified>(identify(driven(rows), {0, rows}, {})).warnings;
   };
-  EXPECT_THAT(warnings(60), Contains(AllOf(HasSubstr("no order above 1"), HasSubstr(" 200 rows"))));
+  EXPECT_THAT(warnings(60), Contains(AllOf(HasSubstr("no order above 3"), HasSubstr(" 200 rows"))));
   EXPECT_THAT(warnings(199), Contains(HasSubstr("no order above 9")));
   EXPECT_THAT(warnings(200), IsEmpty());
 }
