@@ -78,18 +78,25 @@ std::string delays_text(const IdentifyOutcome& outcome) {
   return text;
 }
 
+/// Absent where a mode lasts longer than the rows.
+std::optional<identification::Matrix> shown_gain(const IdentifyOutcome& outcome) {
+  const StateSpaceModel& model = outcome.identified.model;
+  const bool ends =
+      slowest_time_constant_s(model) <= model.period_s * static_cast<double>(outcome.identify.rows);
+  return ends ? static_gain(model) : std::nullopt;
+}
+
 /// A line for each output.
 std::string gains_text(const IdentifyOutcome& outcome) {
   const StateSpaceModel& model = outcome.identified.model;
-  const auto gain = static_gain(model);
+  const auto gain = shown_gain(outcome);
   if (outcome.inputs.empty()) return "";
-  const double slowest = slowest_time_constant_s(model);
-  const double rows = model.period_s * static_cast<double>(outcome.identify.rows);
-  if (!gain || slowest > rows)
+  if (!gain)
     return fmt::format(
         "gains at rest: none that the rows show; the slowest mode lasts {:.3g} s, the "
         "identification rows {:.3g} s\n",
-        slowest, rows);
+        slowest_time_constant_s(model),
+        model.period_s * static_cast<double>(outcome.identify.rows));
   std::string text;
   const auto& regimes = outcome.identified.regimes;
   const std::size_t inputs =
@@ -124,8 +131,8 @@ ordered_json regimes_json(const IdentifyOutcome& outcome) {
   return json;
 }
 
-ordered_json gains_json(const StateSpaceModel& model) {
-  const auto gain = static_gain(model);
+ordered_json gains_json(const IdentifyOutcome& outcome) {
+  const auto gain = shown_gain(outcome);
   return gain ? to_json(*gain) : ordered_json();
 }
 
@@ -166,7 +173,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"x0", to_json(outcome.identified.x0)},
       {"input_offset", to_json(model.u0)},
       {"output_offset", to_json(model.y0)},
-      {"static_gain", gains_json(model)},
+      {"static_gain", gains_json(outcome)},
       {"stable", outcome.identified.spectral_radius < 1},
       {"spectral_radius", outcome.identified.spectral_radius},
       {"mrse_percent",

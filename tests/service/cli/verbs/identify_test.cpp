@@ -215,6 +215,22 @@ TEST_F(Identify, GivesEachValueOfAColumnARegime) {
   EXPECT_LT(json_of(words)["fit_percent"]["validate"][0], 90);
 }
 
+TEST_F(Identify, AnIntegratorHasNoGainAtRestInTextOrJson) {
+  std::string text = "u,y\n";
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  double u = 0, x = 0;
+  for (int row = 0; row < 600; ++row) {
+    if (row % 13 == 0) u = normal(random);
+    text += fmt::format("{},{}\n", u, x + 0.05 * normal(random));
+    x += u;
+  }
+  write("charge.csv", text);
+  const json printed = json_of({"identify", "charge.csv", "--input", "u", "--output", "y"});
+  EXPECT_EQ(printed["order"], 1);
+  EXPECT_TRUE(printed["static_gain"].is_null());
+}
+
 TEST_F(Identify, WarnsWhenTheRangesOverlap) {
   write("plant.csv", csv_of(plant(600)));
   const json printed = json_of(command({"--identify", "0:400", "--validate", "300:600"}));
