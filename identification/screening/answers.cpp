@@ -217,7 +217,7 @@ std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excurs
       heights.push_back(one.height);
       return false;
     });
-  const bool errs_more_with =
+    const bool errs_more_with =
         predictions.know_excursions() && squared(sum_with) > clearly * squared(sum);
     if (squared(sum) > clearly * largest_sum(heights, elsewhere) && !errs_more_with)
       std::erase_if(excursions,

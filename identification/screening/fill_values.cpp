@@ -17,16 +17,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double far = 10, absurd = 1e4;
 // How far outside of the others a number of nines lies that has another sign, of their range.
 constexpr double least_gap = 0.05;
-// A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all,
-// and the share of them at which another channel may jump by chance.
+// A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all
+// plateaus and of all rows, and the share of them at which another channel may jump.
 constexpr Index least_scattered = 3;
 constexpr double most_scattered = 0.25, jumps_together = 0.5;
 // A value of excursions: how many have it, and how much more often it is repeated than others are.
 constexpr Index least_repeated = 5;
 constexpr double more_often = 5, exact_share = 0.9;
-// Plateaus of more than twice the usual length: their rows, their share of all rows, and the
-// deviations by which another channel turns at them, as at what the equipment does.
-constexpr double longest_scattered = 30, most_scattered_rows = 0.25, turned_deviations = 4;
+// Plateaus of more than twice the usual length: their rows, and the deviations by which another
+// channel turns at them, as at what the equipment does.
+constexpr double longest_scattered = 30, turned_deviations = 4;
 
 bool is_of_nines(double magnitude) {
   for (double nines = 99; nines < 1e16; nines = 10 * nines + 9)
@@ -232,7 +232,7 @@ bool stand_for_none(const std::vector<Channel>& channels, std::size_t self,
   const double length = median_size(fills);
   const bool is_long = length > 2 * median_size(others);
   if (is_long &&
-      (length > longest_scattered || double(rows) > most_scattered_rows * double(values.size()) ||
+      (length > longest_scattered || double(rows) > most_scattered * double(values.size()) ||
        another_turns(witnesses, fills)))
     return false;
   if (another_jumps(witnesses, fills)) return false;

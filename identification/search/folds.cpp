@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
@@ -105,11 +106,20 @@ double held_out_error_of_sums(const Record& record, const std::vector<Fold>& fol
   Matrix sums = Matrix::Zero(count, m + 1);  // the last column for what decays without inputs
   sums.col(m).setOnes();
   const Vector mean = record.u.colwise().mean().transpose();
-  const auto advance = [&](Index row, double ticks) {
+  const auto decays = [&rates](double ticks) {
+    std::vector<std::pair<double, double>> result;  // of a sum, and of an input that is held
+    for (const double rate : rates)
+      result.emplace_back(std::exp(-rate * ticks),
+                          rate > 0 ? -std::expm1(-rate * ticks) / rate : ticks);
+    return result;
+  };
+  const auto of_one_tick = decays(1);
+  auto of_hole = of_one_tick;
+  const auto advance = [&](Index row, std::int64_t ticks) {
+    const auto& own = ticks == 1 ? of_one_tick : (of_hole = decays(double(ticks)));
     for (Index i = 0; i < count; ++i) {
-      const double rate = rates[static_cast<std::size_t>(i)];
-      sums.row(i) *= std::exp(-rate * ticks);
-      const double held = rate > 0 ? -std::expm1(-rate * ticks) / rate : ticks;
+      const auto [decay, held] = own[static_cast<std::size_t>(i)];
+      sums.row(i) *= decay;
       sums.row(i).head(m) += held * (record.u.row(row) - mean.transpose());
     }
   };
@@ -119,7 +129,7 @@ double held_out_error_of_sums(const Record& record, const std::vector<Fold>& fol
   for (const Segment& segment : record.segments)
     for (Index row = segment.begin; row < segment.end; ++row) {
       const std::int64_t tick = segment.first_tick + (row - segment.begin);
-      if (row > 0) advance(row - 1, double(tick - before));
+      if (row > 0) advance(row - 1, tick - before);
       before = tick;
       if (row % stride != 0) continue;
       const Index k = row / stride;

@@ -59,7 +59,7 @@ double held_out_error_of_constant(const Record& record, const std::vector<Fold>&
 
 /// Returns the mean over the folds of the error of a regression on a straight line in time, the
 /// inputs, and their sums from the first row on, which decay by each of the `rates` [1/row], 0 or
-/// above. Inputs are held over holes. Of long records it takes every so manieth row.
+/// above. Inputs are held over holes. It takes at most 1000 rows, equally far apart.
 double held_out_error_of_sums(const Record& record, const std::vector<Fold>& folds,
                               const std::vector<double>& rates);
 
