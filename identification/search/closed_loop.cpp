@@ -69,6 +69,14 @@ Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
   return result;
 }
 
+/// Whether most values are those of the row before: such an input is a command, and no sensor's.
+bool mostly_repeats(const Vector& values, RowRange rows) {
+  Index repeats = 0;
+  for (Index row = rows.begin + 1; row < rows.end; ++row)
+    repeats += values(row) == values(row - 1) ? 1 : 0;
+  return 2 * repeats > rows.size();
+}
+
 /// LoopModel::log_variance of what is left of the outputs.
 double log_variance_of_rest(const Matrix& y, const Matrix& explained, RowRange rows) {
   const Matrix rest = (y - explained).middleRows(rows.begin, rows.size());
@@ -164,11 +172,12 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     const Index after = looked_at.size() / 10;
     const double own = step_response(identified.model, output, input, after);
     const double of_loop = unit * step_response(loops.front().model, one.output, one.input, after);
-    const bool is_far_less = std::all_of(loops.begin(), loops.end(), [&](const LoopModel& loop) {
+    const auto has_far_more = [&](const LoopModel& loop) {
       const double response = unit * step_response(loop.model, one.output, one.input, after);
       return response * of_loop > 0 && std::abs(response) > far_more * std::abs(own);
-    });
-    if (is_far_less)
+    };
+    if (mostly_repeats(record.u.col(one.input), looked_at) &&
+        std::all_of(loops.begin(), loops.end(), has_far_more))
       return Verdict{VerdictCode::closed_loop,
                      "closed loop: " + who + "; a step of " + rows.input_name(input) +
                          " would move " +
