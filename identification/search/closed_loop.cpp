@@ -69,6 +69,35 @@ Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
   return result;
 }
 
+std::string who_follows(const std::vector<Feedback>& feedback, const PreparedRows& rows) {
+  const Normalisation& channels = rows.normalisation();
+  std::string who;
+  for (const Feedback& one : feedback)
+    who += (who.empty() ? "" : ", ") +
+           rows.input_name(channels.inputs[static_cast<std::size_t>(one.input)]) + " follows " +
+           channel_name("output", channels.outputs[static_cast<std::size_t>(one.output)],
+                        rows.options().output_names);
+  return who;
+}
+
+/// Those of all rows and of each half; fewer where there are too few rows.
+std::vector<LoopModel> loop_models(const Record& record, RowRange rows) {
+  const Index middle = (rows.begin + rows.end) / 2;
+  std::vector<LoopModel> loops;
+  for (const RowRange part : {rows, RowRange{rows.begin, middle}, RowRange{middle, rows.end}})
+    if (auto loop = loop_model(record, part, past, max_order)) loops.push_back(std::move(*loop));
+  return loops;
+}
+
+/// Whether a figure of the models is certainly above zero.
+bool is_above_zero(const std::vector<LoopModel>& loops,
+                   const std::function<double(const StateSpaceModel&)>& figure) {
+  std::vector<double> values;
+  for (const LoopModel& loop : loops) values.push_back(figure(loop.model));
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  return *least > certain_spreads * (*greatest - *least);
+}
+
 /// Whether most values are those of the row before: such an input is a command, and no sensor's.
 bool mostly_repeats(const Vector& values, RowRange rows) {
   Index repeats = 0;
@@ -95,12 +124,7 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   const Matrix explained = of_inputs(rows, identified);
   const std::vector<Feedback> feedback = feedback_of(record, looked_at, past, explained);
   if (feedback.empty()) return std::nullopt;
-  std::string who;
-  for (const Feedback& one : feedback)
-    who += (who.empty() ? "" : ", ") +
-           rows.input_name(channels.inputs[static_cast<std::size_t>(one.input)]) + " follows " +
-           channel_name("output", channels.outputs[static_cast<std::size_t>(one.output)],
-                        rows.options().output_names);
+  const std::string who = who_follows(feedback, rows);
 
   if (std::any_of(feedback.begin(), feedback.end(),
                   [](const Feedback& one) { return one.share > whole_share; }))
@@ -109,22 +133,13 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
                        " and does nothing else: the rows show the controller and not the "
                        "equipment; choose a window in which something else drives the loop, such "
                        "as its reference, and take that as the input"};
-  const Index middle = (looked_at.begin + looked_at.end) / 2;
-  std::vector<LoopModel> loops;
-  for (const RowRange part :
-       {looked_at, RowRange{looked_at.begin, middle}, RowRange{middle, looked_at.end}})
-    if (auto loop = loop_model(record, part, past, max_order)) loops.push_back(std::move(*loop));
+  const std::vector<LoopModel> loops = loop_models(record, looked_at);
   if (loops.size() < 3) {
     warnings.push_back("closed loop: " + who +
                        "; the rows are too few to say what the inputs do by themselves");
     return std::nullopt;
   }
-  const auto certain = [&loops](const std::function<double(const StateSpaceModel&)>& above_zero) {
-    std::vector<double> values;
-    for (const LoopModel& loop : loops) values.push_back(above_zero(loop.model));
-    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-    return *least > certain_spreads * (*greatest - *least);
-  };
+  const auto certain = [&loops](const auto& figure) { return is_above_zero(loops, figure); };
   const bool runs_away =
       double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
   if (runs_away &&
@@ -140,15 +155,16 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   for (const Feedback& one : feedback) {
     const Index input = channels.inputs[static_cast<std::size_t>(one.input)];
     const Index output = channels.outputs[static_cast<std::size_t>(one.output)];
+    const std::string of_input = rows.input_name(input);
+    const std::string of_output = channel_name("output", output, rows.options().output_names);
     const double found = gain_of(identified.model, output, input);
     const auto has_sign = [&](double sign) {
       return certain([&](const StateSpaceModel& loop) {
         return sign * gain_of(loop, one.output, one.input) * found;
       });
     };
-    const std::string would_be = "the gain from " + rows.input_name(input) + " to " +
-                                 channel_name("output", output, rows.options().output_names) +
-                                 " would be " + four_digits(found);
+    const std::string would_be =
+        "the gain from " + of_input + " to " + of_output + " would be " + four_digits(found);
     // What acts at once is no part of the method's model: so the model has to begin so too.
     const bool begins_otherwise =
         found * step_response(identified.model, output, input, past) < 0 &&
@@ -176,22 +192,19 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
       const double response = unit * step_response(loop.model, one.output, one.input, after);
       return response * of_loop > 0 && std::abs(response) > far_more * std::abs(own);
     };
+    const std::string responses = "; in this model " + of_output + " moves by " + four_digits(own) +
+                                  " in the " + std::to_string(after) + " rows after a step of " +
+                                  of_input + ", and by " + four_digits(of_loop) +
+                                  " by a method for closed loops";
     if (mostly_repeats(record.u.col(one.input), looked_at) &&
         std::all_of(loops.begin(), loops.end(), has_far_more))
       return Verdict{VerdictCode::closed_loop,
-                     "closed loop: " + who + "; a step of " + rows.input_name(input) +
-                         " would move " +
-                         channel_name("output", output, rows.options().output_names) + " by " +
-                         four_digits(own) + " in " + std::to_string(after) + " rows, and by " +
-                         four_digits(of_loop) +
-                         " by a method for closed loops: the model is the controller's; take what "
-                         "drives the loop, such as its reference, as the input"};
+                     "closed loop: " + who + responses +
+                         ", so that it shows the controller; take what drives the loop, such as "
+                         "its reference, as the input"};
     agree = agree && std::abs(own - of_loop) <= equal_responses * std::abs(own);
-    sensors += (sensors.empty() ? "the sensor of " : " or that of ") + rows.input_name(input);
-    compared += "; in this model " + channel_name("output", output, rows.options().output_names) +
-                " moves by " + four_digits(own) + " in the " + std::to_string(after) +
-                " rows after a step of " + rows.input_name(input) + ", and by " +
-                four_digits(of_loop) + " by a method for closed loops";
+    sensors += (sensors.empty() ? "the sensor of " : " or that of ") + of_input;
+    compared += responses;
   }
   // A worse sensor of an input and a controller look alike. Where it matters, it is a controller.
   warnings.push_back(agree ? who + ", in a closed loop or since " + sensors +

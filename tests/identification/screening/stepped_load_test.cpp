@@ -1,0 +1,109 @@
+// Faults of single sensors while the equipment steps all the time, and rows in which it rests.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "identification/samples/tick_ranges.hpp"
+#include "identification/screening/sensor_screening.hpp"
+
+namespace reident::identification::stepped_load_test {
+namespace {
+
+double quantised(double value, double step) {
+  return std::round(value / step) * step;
+}
+
+/// A load in levels from 2 to 7 A that hold some 8 rows, with noise, and a bus that answers it.
+struct SteppedLoad {
+  Record record{1, Matrix(700, 1), Matrix(700, 1), {{0, 700, 0}}};
+  std::mt19937 random;
+
+  explicit SteppedLoad(unsigned seed) : random(seed) {
+    std::normal_distribution<double> noise;
+    std::uniform_real_distribution<double> level(2, 7);
+    double load = level(random), state = 0;
+    for (Index t = 0; t < 700; ++t) {
+      if (random() % 8 == 0) load = level(random);
+      record.u(t) = quantised(load + 0.01 * noise(random), 0.001);
+      record.y(t) = quantised(28.2 - state + 0.01 * noise(random), 0.001);
+      state += 0.07 * (0.25 * load - state);
+    }
+  }
+  TickSet found(SensorFaultKind kind, Index channel) const {
+    std::vector<TickRange> ticks;
+    for (const SensorFault& fault : sensor_faults(record, {true, true}))
+      if (fault.kind == kind && fault.channel == channel) ticks.push_back(fault.ticks);
+    return united(std::move(ticks));
+  }
+};
+
+TEST(ScreeningOfSteps, FindsABusAtZeroInStretchesWhileTheLoadStepsAllTheTime) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    std::vector<TickRange> zeros;
+    for (const Index begin : {60, 230, 240, 410, 633}) {
+      const auto rows = static_cast<Index>(6 + telemetry.random() % 7);
+      telemetry.record.y.middleRows(begin, rows).setZero();
+      zeros.push_back({begin, begin + rows});
+    }
+    right += telemetry.found(SensorFaultKind::fill, 1) == united(std::move(zeros));
+  }
+  EXPECT_GE(right, 19);
+}
+
+TEST(ScreeningOfSteps, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    telemetry.record.u.middleRows(300, 48).setConstant(6.8);
+    right += size(telemetry.found(SensorFaultKind::stuck, 0)) == 48;
+  }
+  EXPECT_GE(right, 19);
+}
+
+TEST(ScreeningOfSteps, LeavesInputsAndOutputsThatCameToRest) {
+  for (const double noise : {0.0, 0.02})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      std::mt19937 random(seed);
+      std::normal_distribution<double> normal;
+      Record record{1, Matrix(400, 2), Matrix(400, 1), {{0, 400, 0}}};
+      for (double& value : record.u.reshaped()) value = normal(random);
+      record.u.bottomRows(150).rowwise() = record.u.row(250).eval();
+      double state = 0;
+      for (Index t = 0; t < 400; ++t) {
+        record.y(t) = quantised(5 + state + noise * normal(random), 0.001);
+        state = 0.7 * state + record.u(t, 0) + 0.3 * record.u(t, 1);
+      }
+      EXPECT_TRUE(sensor_faults(record, {true, true, true}).empty()) << noise << " " << seed;
+    }
+}
+
+TEST(ScreeningOfSteps, FindsAnImpossibleInputWhereItSteps) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    SteppedLoad telemetry(seed);
+    auto& load = telemetry.record.u;
+    Index row = 100;
+    while (std::abs(load(row) - load(row - 1)) < 2) ++row;
+    load(row) = 480;
+    const TickSet found = telemetry.found(SensorFaultKind::spike, 0);
+    right += std::ranges::count(found, TickRange{row, row + 1}) > 0;
+  }
+  EXPECT_GE(right, 49);
+}
+
+TEST(ScreeningOfSteps, LeavesANoisySensorThatIsSaturatedForLongOnce) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    telemetry.record.u.middleRows(300, 48).setConstant(7.5);
+    EXPECT_TRUE(telemetry.found(SensorFaultKind::stuck, 0).empty()) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace reident::identification::stepped_load_test
