@@ -24,7 +24,7 @@ Matrix Whitener::white(const Eigen::Ref<const Matrix>& values) {
   };
   const Index first = std::clamp<Index>(past.order() - before, 0, count);
   for (Index t = 0; t < first; ++t) whiten(t, 1, before + t);
-  whiten(first, count - first, past.order());
+  if (first < count) whiten(first, count - first, past.order());
   latest_ = all.rightCols(std::min(past.order(), all.cols()));
   return result;
 }

@@ -134,16 +134,15 @@ void Predictions::predict(std::size_t channel) {
   const std::array<Index, 1> one{target};
   weights_(others) = -solve_ldlt_on_right(gram_(one, others), gram_(others, others)).row(0);
   weights_(target) = 1;
+  // The coefficients of the channel of the excursions, and what these are uncertain by.
+  Matrix units = Matrix::Zero(predicting_rows, std::ssize(others));
+  const Index own = predicting_rows * static_cast<Index>(self_);
+  units.middleCols(own - (own > target ? 1 : 0), predicting_rows).setIdentity();
+  const Matrix inverse = solve_ldlt_on_right(units, gram_(others, others)) * units.transpose();
   const double variance = weights_.dot(gram_ * weights_) / double(fitted_);
-  know_excursions_ = false;
-  for (Index back = 0; back < predicting_rows; ++back) {
-    const Index place = predicting_rows * static_cast<Index>(self_) + back;
-    Matrix unit = Matrix::Zero(1, std::ssize(others));
-    unit(0, place - (place > target ? 1 : 0)) = 1;
-    const double inverse = solve_ldlt_on_right(unit, gram_(others, others)).row(0).dot(unit.row(0));
-    if (std::pow(weights_(place), 2) > std::pow(surely, 2) * variance * inverse)
-      know_excursions_ = true;
-  }
+  know_excursions_ = (weights_.segment(own, predicting_rows).array().square() >
+                      std::pow(surely, 2) * variance * inverse.diagonal().array())
+                         .any();
 }
 
 std::optional<Errors> Predictions::errors_around(const Plateau& excursion, bool without) {

@@ -1,6 +1,8 @@
 // What reident identify prints of kinds of models.
+#include <functional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,18 +17,29 @@ using nlohmann::json;
 
 using IdentifyKinds = test::CliTest;
 
-TEST_F(IdentifyKinds, GivesEachValueOfAColumnARegime) {
-  std::string text = "u,mode,y\n";
+/// A file of rows that begin with an input in random steps; `rest_of` makes the rest of a row of
+/// the input and a normal number.
+std::string stepped(const std::string& header, int rows,
+                    const std::function<std::string(int, double, double)>& rest_of) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  double u = 0, x = 0;
-  for (int row = 0; row < 900; ++row) {
+  std::string text = header + "\n";
+  double u = 0;
+  for (int row = 0; row < rows; ++row) {
     if (row % 13 == 0) u = normal(random);
-    const bool is_in = row % 200 < 80;
-    text += fmt::format("{},{},{}\n", u, is_in ? 3 : 1, x + 0.01 * normal(random));
-    x = 0.8 * x + 0.2 * (is_in ? 2 : 1) * u;
+    text += fmt::format("{},{}\n", u, rest_of(row, u, normal(random)));
   }
-  write("switching.csv", text);
+  return text;
+}
+
+TEST_F(IdentifyKinds, GivesEachValueOfAColumnARegime) {
+  double x = 0;
+  write("switching.csv", stepped("u,mode,y", 900, [&x](int row, double u, double noise) {
+          const bool is_in = row % 200 < 80;
+          const std::string rest = fmt::format("{},{}", is_in ? 3 : 1, x + 0.01 * noise);
+          x = 0.8 * x + 0.2 * (is_in ? 2 : 1) * u;
+          return rest;
+        }));
   const Strings words = {"identify", "switching.csv", "--input", "u", "--output", "y"};
   Strings with = words;
   with.insert(with.end(), {"--regime", "mode"});
@@ -39,17 +52,12 @@ TEST_F(IdentifyKinds, GivesEachValueOfAColumnARegime) {
   EXPECT_LT(json_of(words)["fit_percent"]["validate"][0], 90);
 }
 
-TEST_F(IdentifyKinds, AnIntegratorHasNoGainAtRestInTextOrJson) {
-  std::string text = "u,y\n";
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
-  double u = 0, x = 0;
-  for (int row = 0; row < 600; ++row) {
-    if (row % 13 == 0) u = normal(random);
-    text += fmt::format("{},{}\n", u, x + 0.05 * normal(random));
-    x += u;
-  }
-  write("charge.csv", text);
+TEST_F(IdentifyKinds, AnIntegratorHasNoGainAtRest) {
+  double x = 0;
+  write("charge.csv", stepped("u,y", 600, [&x](int, double u, double noise) {
+          const double charge = std::exchange(x, x + u);
+          return fmt::format("{}", charge + 0.05 * noise);
+        }));
   const json printed = json_of({"identify", "charge.csv", "--input", "u", "--output", "y"});
   EXPECT_EQ(printed["order"], 1);
   EXPECT_TRUE(printed["static_gain"].is_null());
