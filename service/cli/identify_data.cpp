@@ -222,10 +222,25 @@ void derive_inputs(InputExpressions& expressions, IdentifyData& data) {
 void warn_of_held_rows(IdentifyData& data) {
   const Index rows = rows_per_sample(data.record);
   if (rows > 1)
-    data.warnings.push_back(fmt::format(
+    return data.warnings.push_back(fmt::format(
         "each value stands for {} rows in every column: --period {:g} takes one row of each, which "
         "is all that the file holds",
         rows, static_cast<double>(rows) * data.record.period_s));
+  Record alone{data.record.period_s,
+               identification::Matrix(data.record.rows(), 0),
+               {},
+               data.record.segments};
+  for (std::size_t q = 0; q < data.outputs.size(); ++q) {
+    alone.y = data.record.y.col(static_cast<Index>(q));
+    if (const Index held = rows_per_sample(alone); held > 1)
+      data.warnings.push_back(fmt::format(
+          "each value of {} stands for {} rows, in which other columns move: the model has the "
+          "repeats in it, as a delay of {:g} rows on average and modes that are not the "
+          "equipment's; --period {:g} takes one row of each, and what the others do between is "
+          "lost",
+          data.outputs[q], held, static_cast<double>(held - 1) / 2,
+          static_cast<double>(held) * data.record.period_s));
+  }
 }
 
 /// Where neither the time nor a period was given.

@@ -63,5 +63,20 @@ TEST_F(IdentifyKinds, AnIntegratorHasNoGainAtRest) {
   EXPECT_TRUE(printed["static_gain"].is_null());
 }
 
+TEST_F(IdentifyKinds, AnOutputThatIsHeldForSomeRowsIsNamed) {
+  for (const int held : {1, 4}) {
+    double x = 0, sent = 0;
+    write("held.csv", stepped("u,y", 900, [&](int row, double u, double noise) {
+            if (row % held == 0) sent = x + 0.01 * noise;
+            x = 0.9 * x + 0.1 * u;
+            return fmt::format("{:.4f}", sent);
+          }));
+    const json printed = json_of({"identify", "held.csv", "--input", "u", "--output", "y"});
+    EXPECT_EQ(printed["warnings"].dump().find("y stands for 4 rows") != std::string::npos,
+              held == 4)
+        << printed["warnings"];
+  }
+}
+
 }  // namespace
 }  // namespace reident::cli::identify_kinds_test
