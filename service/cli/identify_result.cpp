@@ -1,10 +1,13 @@
 #include "service/cli/identify_result.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/search/delays.hpp"
 #include "service/cli/output/diagnostics_text.hpp"
 #include "service/cli/output/model_text.hpp"
@@ -78,12 +81,22 @@ std::string delays_text(const IdentifyOutcome& outcome) {
   return text;
 }
 
-/// Absent where a mode lasts longer than the rows.
+double rows_s(const IdentifyOutcome& outcome) {
+  return outcome.identified.model.period_s * static_cast<double>(outcome.identify.rows);
+}
+
+/// 1 / |s| of the slowest mode [s]: an oscillation's, over 2 pi, however long it lasts.
+double slowest_mode_s(const StateSpaceModel& model) {
+  double slowest = 0;
+  for (const std::complex<double>& mode : identification::eigenvalues(model.A))
+    slowest = std::max(slowest, model.period_s / std::abs(std::log(mode)));
+  return slowest;
+}
+
+/// Absent where a mode is slower than the rows.
 std::optional<identification::Matrix> shown_gain(const IdentifyOutcome& outcome) {
   const StateSpaceModel& model = outcome.identified.model;
-  const bool ends =
-      slowest_time_constant_s(model) <= model.period_s * static_cast<double>(outcome.identify.rows);
-  return ends ? static_gain(model) : std::nullopt;
+  return slowest_mode_s(model) <= rows_s(outcome) ? static_gain(model) : std::nullopt;
 }
 
 /// A line for each output.
@@ -95,8 +108,7 @@ std::string gains_text(const IdentifyOutcome& outcome) {
     return fmt::format(
         "gains at rest: none that the rows show; the slowest mode lasts {:.3g} s, the "
         "identification rows {:.3g} s\n",
-        slowest_time_constant_s(model),
-        model.period_s * static_cast<double>(outcome.identify.rows));
+        slowest_mode_s(model), rows_s(outcome));
   std::string text;
   const auto& regimes = outcome.identified.regimes;
   const std::size_t inputs =

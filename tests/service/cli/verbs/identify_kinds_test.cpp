@@ -1,4 +1,5 @@
 // What reident identify prints of kinds of models.
+#include <cmath>
 #include <functional>
 #include <random>
 #include <string>
@@ -61,6 +62,19 @@ TEST_F(IdentifyKinds, AnIntegratorHasNoGainAtRest) {
   const json printed = json_of({"identify", "charge.csv", "--input", "u", "--output", "y"});
   EXPECT_EQ(printed["order"], 1);
   EXPECT_TRUE(printed["static_gain"].is_null());
+}
+
+// A disturbance of the orbit's period, say.
+TEST_F(IdentifyKinds, AnOscillationThatDoesNotEndLeavesTheGainsAtRest) {
+  double x = 0;
+  write("orbit.csv", stepped("u,y", 900, [&x](int row, double u, double noise) {
+          const double y = x + 0.5 * std::sin(row / 15.0) + 0.01 * noise;
+          x = 0.9 * x + 0.1 * u;
+          return fmt::format("{}", y);
+        }));
+  const json printed = json_of({"identify", "orbit.csv", "--input", "u", "--output", "y"});
+  ASSERT_GE(printed["order"], 3);
+  EXPECT_NEAR(printed["static_gain"][0][0], 1, 0.05);
 }
 
 TEST_F(IdentifyKinds, AnOutputThatIsHeldForSomeRowsIsNamed) {
