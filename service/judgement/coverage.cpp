@@ -6,15 +6,17 @@ namespace reident {
 
 using storage::Block;
 using storage::Time;
+using storage::TimeRange;
 
 std::map<int, ServedRegime> served_regimes(const League& league, const std::vector<int>& regimes,
-                                           const Member& member, Time since) {
+                                           const Member& member, TimeRange range) {
   std::map<int, ServedRegime> served;
   for (std::size_t i = 0; i < league.blocks.size(); ++i) {
     if (regimes[i] < 0) continue;
     ServedRegime& regime = served[regimes[i]];
-    if (league.blocks[i].range.begin >= since) regime.blocks.push_back(i);
-    regime.is_met = regime.is_met || find(member.scores, league.blocks[i].range.begin);
+    const Time begin = league.blocks[i].range.begin;
+    if (begin >= range.begin && begin < range.end) regime.blocks.push_back(i);
+    regime.is_met = regime.is_met || find(member.scores, begin);
   }
   return served;
 }
@@ -26,25 +28,29 @@ double uncovered_share(const std::map<int, ServedRegime>& served) {
   return uncovered > 0 ? uncovered / (met + uncovered) : 0;
 }
 
-std::vector<Time> earlier_blocks(const League& league, const std::map<int, ServedRegime>& served,
-                                 const Member& member) {
+std::vector<Time> earlier_blocks(const League& league, const std::vector<int>& regimes,
+                                 const Member& member, Time changed) {
   std::vector<Time> begins;
-  for (const auto& [number, regime] : served) {
-    const auto& blocks = regime.blocks;
-    const auto record = std::ranges::lower_bound(
-        blocks, member.record, {}, [&](std::size_t i) { return league.blocks[i].range.begin; });
-    if (blocks.end() - record >= blocks_of_cycle) continue;
-    const auto count =
-        std::min<std::ptrdiff_t>(record - blocks.begin(), cycles_before * blocks_of_cycle);
-    for (auto i = record - count; i != record; ++i) begins.push_back(league.blocks[*i].range.begin);
-  }
+  for (const bool before : {true, false})
+    for (const auto& [number, regime] :
+         served_regimes(league, regimes, member,
+                        before ? TimeRange{INT64_MIN, changed} : TimeRange{changed, INT64_MAX})) {
+      const auto& blocks = regime.blocks;
+      const auto record = std::ranges::lower_bound(
+          blocks, member.record, {}, [&](std::size_t i) { return league.blocks[i].range.begin; });
+      if (blocks.end() - record >= blocks_of_cycle) continue;
+      const auto count =
+          std::min<std::ptrdiff_t>(record - blocks.begin(), cycles_before * blocks_of_cycle);
+      for (auto i = record - count; i != record; ++i)
+        begins.push_back(league.blocks[*i].range.begin);
+    }
   std::ranges::sort(begins);
   return begins;
 }
 
 std::pair<double, double> served_errors(const League& league,
                                         const std::map<int, ServedRegime>& served,
-                                        const Member& member) {
+                                        const Member& member, bool bounded) {
   Sums usual;
   for (const Block& block : league.blocks)
     if (counts(block) && block.range.begin >= member.window.begin &&
@@ -52,7 +58,7 @@ std::pair<double, double> served_errors(const League& league,
       usual.add(block, block.output_square);
   const auto add = [&](Sums& sums, const Member& of, const Block& block, double weight) {
     std::vector<double> square = find(of.scores, block.range.begin)->square;
-    for (std::size_t q = 0; usual.rows > 0 && q < square.size(); ++q)
+    for (std::size_t q = 0; bounded && usual.rows > 0 && q < square.size(); ++q)
       square[q] = std::min(square[q], usual.error(std::ptrdiff_t(q)) / usual.rows);
     sums.add(block, square, weight);
   };

@@ -12,7 +12,6 @@
 namespace reident {
 namespace {
 
-using identification::Index;
 using identification::InputRanges;
 using identification::ScoreSeries;
 using storage::Block;
@@ -143,8 +142,7 @@ std::vector<Time> Judge::earlier_blocks(const League& league, const Member& memb
     return begins;
   }
   take_in(league);
-  return reident::earlier_blocks(
-      league, served_regimes(league, regimes_.numbers(), member, changed(league)), member);
+  return reident::earlier_blocks(league, regimes_.numbers(), member, changed(league));
 }
 
 std::optional<Change> Judge::change(const League& league) {
@@ -207,15 +205,15 @@ std::optional<Reason> Judge::failure(const League& league) {
       return std::nullopt;
     return because<Code::champion_failed>(champion, error, losses.scores.size(), rival, theirs);
   };
-  const Sums& own = compared_.own;
-  if (!(own.fit_percent() > 0)) {
+  if (const Sums& own = compared_.own; !(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;
     Comparison with_mean;
     for_each_score(league, *league.champion, since_, 0,
                    [&](std::size_t i, const Block& block, const BlockScore& score) {
                      std::vector<double> square = block.output_square;
                      for (std::size_t q = 0; q < square.size(); ++q)
-                       square[q] += mean[Index(q)] * (mean[Index(q)] - 2 * block.output_mean[q]);
+                       square[q] += mean[std::ptrdiff_t(q)] *
+                                    (mean[std::ptrdiff_t(q)] - 2 * block.output_mean[q]);
                      with_mean.add(i, block, score, square);
                    });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;

@@ -12,7 +12,6 @@
 namespace reident {
 namespace {
 
-using identification::Index;
 using identification::ScoreSeries;
 using storage::BlockScore;
 using storage::Time;
@@ -39,21 +38,18 @@ Comparison without(OffsetFit offset, const League& league, const Member& member,
 /// The past of the inputs' sensor at `place` is the champion's record before `since`; where that is
 /// short, its first cycles. Blocks that do not have its effect say nothing of it.
 SensorPast past_of(const League& league, std::size_t place, Time since) {
-  std::vector<std::size_t> phases;
-  std::vector<const BlockScore*> scores;
+  PhasedScores scores;
   for_each_score(league, *league.champion, INT64_MIN, 0,
                  [&](std::size_t, const auto& block, const BlockScore& score) {
-                   if (!has_effect(score, place) ||
-                       (block.range.begin >= since && scores.size() >= reference_blocks))
-                     return;
-                   phases.push_back(phase_of(block));
-                   scores.push_back(&score);
+                   if (has_effect(score, place) &&
+                       (block.range.begin < since || scores.size() < reference_blocks))
+                     scores.emplace_back(phase_of(block), &score);
                  });
-  return {place, phases, scores};
+  return {place, scores};
 }
 
-bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regimes, double assumed,
-                       const EquipmentConfig& limits) {
+bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
+  const auto& [league, limits, since, changed, assumed, regimes] = standard;
   std::map<int, std::vector<double>> losses;
   for (std::size_t i = 0; i < compared.blocks.size(); ++i)
     losses[regimes[compared.blocks[i]]].push_back(-compared.scores.values()[i]);
@@ -68,17 +64,22 @@ bool worse_in_a_regime(const Comparison& compared, const std::vector<int>& regim
 /// R2. Uncovered blocks count as if they were lost entirely.
 std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Comparison& compared, Finding& finding) {
-  const std::int64_t champion = standard.league.champion->version;
-  const auto served = served_regimes(standard.league, standard.regimes, member, standard.changed);
-  finding.uncovered_share = uncovered_share(served);
-  if (finding.lower_score * (1 - finding.uncovered_share) < largest_score * finding.uncovered_share)
-    return because<Code::not_covered>(champion, 100 * finding.uncovered_share);
-  if (worse_in_a_regime(compared, standard.regimes, standard.assumed, standard.limits))
-    return because<Code::worse_in_regime>(champion);
+  const auto& [league, limits, since, changed, assumed, regimes] = standard;
+  const std::int64_t champion = league.champion->version;
+  const auto served = served_regimes(league, regimes, member, {changed, INT64_MAX});
+  const double uncovered = finding.uncovered_share = uncovered_share(served);
+  if (finding.lower_score * (1 - uncovered) < largest_score * uncovered)
+    return because<Code::not_covered>(champion, 100 * uncovered);
+  if (worse_in_a_regime(standard, compared)) return because<Code::worse_in_regime>(champion);
   // A regime from before the window is in no bet: yet the errors as a whole may be larger.
-  finding.over_regimes_mrse_percent = served_errors(standard.league, served, member);
-  const auto [own, of_champion] = finding.over_regimes_mrse_percent;
+  const auto [own, of_champion] = finding.over_regimes_mrse_percent =
+      served_errors(league, served, member, true);
   if (!(own < of_champion)) return because<Code::worse_over_regimes>(champion, own, of_champion);
+  // What the change did is as much from either side of it.
+  auto& [before, change] = finding.before_change_mrse_percent = served_errors(
+      league, served_regimes(league, regimes, member, {INT64_MIN, changed}), member, false);
+  change = std::max(change, finding.champion_mrse_percent);
+  if (most * before > change) return because<Code::worse_before_change>(before, champion, change);
   return std::nullopt;
 }
 
@@ -120,10 +121,10 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
 
 /// R5.
 std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
-  const Member& champion = *standard.league.champion;
-  const Duration since = member.window.end - champion.window.end;
+  const Duration since = member.window.end - standard.league.champion->window.end;
   if (since <= 0 || since >= standard.limits.min_interval) return std::nullopt;
-  return because<Code::too_soon>(since, champion.version, standard.limits.min_interval);
+  return because<Code::too_soon>(since, standard.league.champion->version,
+                                 standard.limits.min_interval);
 }
 
 }  // namespace
@@ -214,7 +215,7 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
   finding.mrse_percent = compared.one.mrse_percent();
   finding.fit_percent = compared.one.fit_percent();
   finding.champion_mrse_percent = compared.other.mrse_percent();
-  const Index recent = std::min<Index>(scores.scores.size(), 2 * blocks_of_cycle);
+  const auto recent = std::min<std::ptrdiff_t>(scores.scores.size(), 2 * blocks_of_cycle);
   finding.recent_score = scores.scores.tail(recent).mean();
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))

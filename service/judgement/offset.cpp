@@ -26,14 +26,12 @@ bool has_effect(const BlockScore& score, std::size_t place) {
   return effect_in(score, place) != nullptr;
 }
 
-SensorPast::SensorPast(std::size_t place, const std::vector<std::size_t>& phases,
-                       const std::vector<const BlockScore*>& scores)
-    : place_(place) {
+SensorPast::SensorPast(std::size_t place, const PhasedScores& scores) : place_(place) {
   if (scores.size() < reference_blocks) return;
   std::array<double, blocks_of_cycle> counts{};
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    means_[phases[i]] += *effect_in(*scores[i], place);
-    ++counts[phases[i]];
+  for (const auto& [phase, score] : scores) {
+    means_[phase] += *effect_in(*score, place);
+    ++counts[phase];
   }
   for (std::size_t phase = 0; phase < counts.size(); ++phase) {
     if (counts[phase] == 0) return;
@@ -43,7 +41,8 @@ SensorPast::SensorPast(std::size_t place, const std::vector<std::size_t>& phases
   std::size_t cycles = 0;
   for (std::size_t i = blocks_of_cycle; i <= scores.size(); i += blocks_of_cycle, ++cycles) {
     double sum = 0;
-    for (std::size_t k = i - blocks_of_cycle; k < i; ++k) sum += departure(phases[k], *scores[k]);
+    for (std::size_t k = i - blocks_of_cycle; k < i; ++k)
+      sum += departure(scores[k].first, *scores[k].second);
     square += sum * sum / (blocks_of_cycle * blocks_of_cycle);
   }
   spread_ = std::sqrt(square / static_cast<double>(cycles - 1));

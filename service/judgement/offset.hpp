@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "service/judgement/scores.hpp"
@@ -16,13 +17,15 @@ namespace reident {
 /// Whether the score says what a bias of the inputs' sensor at `place` does.
 bool has_effect(const storage::BlockScore& score, std::size_t place);
 
+/// Scores of blocks with the places of these in their cycles.
+using PhasedScores = std::vector<std::pair<std::size_t, const storage::BlockScore*>>;
+
 /// The means of an inputs' sensor in the cycles of which nobody doubts it.
 class SensorPast {
  public:
   /// Measures the sensor at `place` in these blocks of a record, which have its effect; fewer than
   /// reference_blocks say nothing.
-  SensorPast(std::size_t place, const std::vector<std::size_t>& phases,
-             const std::vector<const storage::BlockScore*>& scores);
+  SensorPast(std::size_t place, const PhasedScores& scores);
 
   std::size_t place() const { return place_; }
   /// How far its mean on the block is from that of its phase. Requires the effect.

@@ -207,6 +207,11 @@ struct Glossary {
        "the time, the version errs no less than the champion. It was run on the last cycles of "
        "those that its record does not have.",
        ""},
+      {"worse_before_change", "errs too much before the change",
+       "What a change of the equipment did is as much from either side of it: the champion errs by "
+       "it on what follows, and a good version on what came before. This one errs more than twice "
+       "as much there. It fits the few days since, and not how the equipment is used.",
+       "Nothing: a later window shows more of it."},
   };
 };
 

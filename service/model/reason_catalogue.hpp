@@ -66,15 +66,16 @@ enum class ReasonCode {
   first_version,
   better,
   // It does not: the first condition that its record does not meet.
-  not_better,          // R1
-  within_margin,       // R1
-  not_covered,         // R2
-  worse_in_regime,     // R2
-  worse_over_regimes,  // R2
-  bias_unverified,     // R3
-  too_soon,            // R5
-  held,                // R5
-  waits_for_operator,  // R5
+  not_better,           // R1
+  within_margin,        // R1
+  not_covered,          // R2
+  worse_in_regime,      // R2
+  worse_over_regimes,   // R2
+  worse_before_change,  // R2
+  bias_unverified,      // R3
+  too_soon,             // R5
+  held,                 // R5
+  waits_for_operator,   // R5
   // It leaves the league.
   league_full,
   // The champion.
@@ -184,9 +185,11 @@ struct Catalogue {
        "has served."},
       {worse_over_regimes, "worse_over_regimes", none,
        "Over the operating regimes since the last change of the equipment, each with its share of "
-       "the "
-       "time, it errs no less than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
+       "the time, it errs no less than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
        "{champion_mrse_percent:.3f} %."},
+      {worse_before_change, "worse_before_change", none,
+       "Before the last change of the equipment it errs {mrse_percent:.3f} %, more than twice what "
+       "champion {champion:d} errs there or since: {champion_mrse_percent:.3f} %."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
        "too; no relation binds it. Waits for an operator's approval."},

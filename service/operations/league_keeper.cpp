@@ -33,6 +33,8 @@ ordered_json to_json(const Finding& finding) {
           {"uncovered_share", finding.uncovered_share},
           {"over_regimes_mrse_percent", finding.over_regimes_mrse_percent.first},
           {"champion_over_regimes_mrse_percent", finding.over_regimes_mrse_percent.second},
+          {"before_change_mrse_percent", finding.before_change_mrse_percent.first},
+          {"champion_before_change_mrse_percent", finding.before_change_mrse_percent.second},
           {"log_wealth_without_offset", finding.wealth_without_offset},
           {"champion_mrse_without_offset_percent", finding.mrse_without_offset},
           {"mrse_percent", finding.mrse_percent},

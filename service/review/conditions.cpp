@@ -24,6 +24,7 @@ Place place_of(std::string_view obstacle) {
                                  std::pair{Code::not_covered, coverage},
                                  std::pair{Code::worse_in_regime, regimes},
                                  std::pair{Code::worse_over_regimes, regimes},
+                                 std::pair{Code::worse_before_change, regimes},
                                  std::pair{Code::bias_unverified, bias},
                                  std::pair{Code::too_soon, policy},
                                  std::pair{Code::held, policy},
@@ -41,9 +42,14 @@ std::string offset(const Finding& finding) {
   return text;
 }
 
+/// Older decisions do not have all of it.
 std::string over_regimes(const Finding& finding) {
   const auto [own, champion] = finding.over_regimes_mrse_percent;
-  return champion > 0 ? fmt::format("{:.3g} % against {:.3g} %", own, champion) : "";
+  std::string text = champion > 0 ? fmt::format("{:.3g} % against {:.3g} %", own, champion) : "";
+  const auto [before, change] = finding.before_change_mrse_percent;
+  if (before > 0)
+    text += fmt::format("; before the change {:.3g} %, the champion {:.3g} %", before, change);
+  return text;
 }
 
 }  // namespace
@@ -69,7 +75,11 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        fmt::format("at least {:.3f}; {:.1f} % not met", finding.lower_score,
                    100 * finding.uncovered_share),
        {}},
-      {"R2", "worse in no regime, with confidence; less error over all", over_regimes(finding), {}},
+      {"R2",
+       "worse in no regime, with confidence; less error over all; before the last change at most "
+       "twice the champion's",
+       over_regimes(finding),
+       {}},
       {"R3",
        fmt::format("without the champion's offset, above {:.2f} too, and half of the gain or twice "
                    "its error",

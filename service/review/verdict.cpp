@@ -25,6 +25,8 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("uncovered_share", finding.uncovered_share);
   read("over_regimes_mrse_percent", finding.over_regimes_mrse_percent.first);
   read("champion_over_regimes_mrse_percent", finding.over_regimes_mrse_percent.second);
+  read("before_change_mrse_percent", finding.before_change_mrse_percent.first);
+  read("champion_before_change_mrse_percent", finding.before_change_mrse_percent.second);
   read("log_wealth_without_offset", finding.wealth_without_offset);
   read("champion_mrse_without_offset_percent", finding.mrse_without_offset);
   read("mrse_percent", finding.mrse_percent);

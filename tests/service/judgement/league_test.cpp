@@ -167,7 +167,7 @@ TEST(League, VersionIsCoveredThatRanOnARegimeFromBeforeItsWindow) {
 }
 
 TEST(League, RegimesOfTheChampionBeforeCountUntilTheEquipmentChanges) {
-  // The champion's window begins behind a regime in which the version errs far more.
+  // The champion's window begins behind a regime in which the version errs more.
   for (const auto& [changed, obstacle] :
        {std::pair(Time{INT64_MIN}, std::optional(Code::worse_over_regimes)),
         {62 * length, std::nullopt}}) {
@@ -175,10 +175,38 @@ TEST(League, RegimesOfTheChampionBeforeCountUntilTheEquipmentChanges) {
     records.swings(0, 60);
     records.champion(varying(0.04), 90).challenger(varying(0.02), 110);
     records.ran_before(*records.league().champion, varying(0.02), 44, 60);
-    records.ran_before(records.league().challengers[0], varying(0.5), 44, 60);
+    records.ran_before(records.league().challengers[0], varying(0.12), 44, 60);
     records.league().changed = changed;
     EXPECT_EQ(records.obstacle(), obstacle);
   }
+}
+
+// A change is as large from either side of it. Versions that learnt one set point fit what follows
+// a change, and err by far more at the others.
+TEST(League, VersionErrsBeforeAChangeByNoMoreThanTwiceWhatItDidToTheChampion) {
+  for (const auto& [own, champion, obstacle] : {std::tuple(0.14, 0.001, std::optional<Code>()),
+                                                {0.5, 0.001, Code::worse_before_change},
+                                                {0.5, 0.15, std::nullopt}}) {
+    Records records(160);
+    records.champion(varying(0.04), 70).challenger(varying(0.02), 110);
+    records.ran_before(*records.league().champion, white(champion), 44, 60);
+    records.ran_before(records.league().challengers[0], white(own), 44, 60);
+    records.league().changed = 62 * length;
+    EXPECT_EQ(records.obstacle(), obstacle) << own << ", " << champion;
+    EXPECT_NEAR(records.findings()[0].before_change_mrse_percent.first, 100 * std::sqrt(own / 101),
+                1e-9);
+  }
+}
+
+TEST(League, NewVersionIsToRunOnTheLastCyclesOfEachRegimeFromBeforeTheChange) {
+  Records records(100);
+  records.swings(20, 40);
+  records.champion(varying(0.02)).challenger(varying(0.01), 80);
+  records.league().changed = 62 * length;
+  const auto begins = records.earlier_blocks();
+  ASSERT_EQ(begins.size(), 2 * cycles_before * blocks_of_cycle);
+  EXPECT_EQ(begins.front(), (43 - 16) * length) << "three blocks behind are of a cycle with them";
+  EXPECT_EQ(begins.back(), 61 * length);
 }
 
 // Two days of swapped parameters, say: no model is of use there, or the champion was fitted to

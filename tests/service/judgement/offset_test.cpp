@@ -1,6 +1,7 @@
 #include "service/judgement/offset.hpp"
 
 #include <cmath>
+#include <deque>
 
 #include <gmock/gmock.h>
 
@@ -24,16 +25,15 @@ BlockScore score(double mean, double square, std::vector<double> effect) {
 
 /// A sensor whose mean is `mean` and its phase, in so many cycles, 1 more in each second one.
 SensorPast past(double mean, std::size_t cycles) {
-  std::vector<BlockScore> blocks;
-  std::vector<std::size_t> phases;
+  std::deque<BlockScore> blocks;
+  PhasedScores scores;
   for (std::size_t i = 0; i < cycles * blocks_of_cycle; ++i) {
-    phases.push_back(i % blocks_of_cycle);
+    const std::size_t phase = i % blocks_of_cycle;
     const double more = i / blocks_of_cycle % 2 == 0 ? 0 : 1;
-    blocks.push_back(score(0, 1, {mean + double(phases.back()) + more, 1, 0}));
+    blocks.push_back(score(0, 1, {mean + double(phase) + more, 1, 0}));
+    scores.emplace_back(phase, &blocks.back());
   }
-  std::vector<const BlockScore*> scores;
-  for (const BlockScore& block : blocks) scores.push_back(&block);
-  return {0, phases, scores};
+  return {0, scores};
 }
 
 TEST(Offset, TheSpreadOfASensorIsThatOfItsCycles) {

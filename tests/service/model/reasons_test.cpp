@@ -82,6 +82,10 @@ const Example of_a_member[] = {
     {because<Code::worse_over_regimes>(3, 5.0, 4.5),
      "Over the operating regimes since the last change of the equipment, each with its share of "
      "the time, it errs no less than champion 3: MRSE 5.000 % and 4.500 %."},
+    {because<Code::worse_before_change>(5.0, 3, 1.5),
+     "Before the last change of the equipment it errs 5.000 %, more than twice what champion 3 "
+     "errs "
+     "there or since: 1.500 %."},
     {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
      "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
      "relation binds it. Waits for an operator's approval."},
