@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "identification/fit/output_error_fit.hpp"
+#include "identification/search/mode_elimination.hpp"
 #include "identification/search/parsimony.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/subspace/hankel.hpp"
@@ -273,8 +274,7 @@ Response Search::fit_of(const Candidate& candidate, std::size_t fold, RowRange r
     return fit_response(Matrix(0, 0), Matrix(p_, 0), true, record, rows, Accuracy::fast);
   const StateSpaceModel& model = models_[fold][candidate.place];
   return recipe.refinement_steps > 0
-             ? refine_response(model.A, model.C, recipe.direct, record, rows,
-                               recipe.refinement_steps, recipe.least_rate)
+             ? refined({model.A, model.C}, recipe, record, rows)
              : fit_response(model.A, model.C, recipe.direct, record, rows, Accuracy::fast);
 }
 
@@ -379,25 +379,19 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
     return fit_of(candidate, 0, fitted);
   };
   const Fold& largest = data_.folds.front();
+  std::optional<Response> rich_fit;
   std::optional<RicherFit> richer;
-  // Absent where something speaks against the order.
-  const auto accepted = [&](int order) -> std::optional<Candidate> {
-    const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
-      return order == 0 || c.recipe.order == order;
-    });
-    if (found == compressed.end()) return std::nullopt;
-    Candidate simple = *found;
-    simple.recipe.order = order;
-    simple.recipe.fit = ResponseFit::simulation;
-    simple.recipe.direct = order == 0 || winner.recipe.direct;
-    simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
-    simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
-    const Response simple_fit = fit(simple);
+  std::vector<FewerModes> fewer;  // than the rich one's
+  // Absent where something speaks against the simpler one.
+  const auto accepted = [&](const Candidate& simple,
+                            const Response& simple_fit) -> std::optional<Candidate> {
     const bool within_steps = errs_within_steps(simple_fit, data_.normalised, fitted);
     const Index extra = std::max<Index>(1, parameters(winner.recipe) - parameters(simple.recipe));
     if (!within_steps) {
-      if (!richer)
-        richer.emplace(fit(rich), rich.recipe.direct, data_.normalised, fitted, least_rate_);
+      if (!richer) {
+        rich_fit = fit(rich);
+        richer.emplace(*rich_fit, rich.recipe.direct, data_.normalised, fitted, least_rate_);
+      }
       if (richer->refutes(simple_fit, simple.recipe.direct, extra)) return std::nullopt;
     }
     std::vector<Candidate> result = scored({simple}, rows);
@@ -413,11 +407,41 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
   // What one order lacks, every lower one lacks.
   std::optional<Candidate> best;
   int refused = (has_order_zero() ? 0 : least_order()) - 1, taken = winner.recipe.order;
+  const auto accepted_of = [&](int order) -> std::optional<Candidate> {
+    const auto found = std::find_if(compressed.begin(), compressed.end(), [&](const Candidate& c) {
+      return order == 0 || c.recipe.order == order;
+    });
+    if (found == compressed.end()) return std::nullopt;
+    Candidate simple = *found;
+    simple.recipe.order = order;
+    simple.recipe.fit = ResponseFit::simulation;
+    simple.recipe.direct = order == 0 || winner.recipe.direct;
+    simple.recipe.refinement_steps = order == 0 ? 0 : refinement_steps;
+    simple.recipe.refined_rows = order == 0 ? 0 : rows * static_cast<Index>(folds());
+    const Response simple_fit = fit(simple);
+    if (auto result = accepted(simple, simple_fit); result || order == 0 || !rich_fit)
+      return result;
+    // The refinement may have missed a mode that the winner has.
+    if (fewer.empty())
+      fewer = fewer_modes({rich_fit->model.A, rich_fit->model.C}, rich.recipe.direct,
+                          data_.normalised, fitted, 1);
+    const auto left = std::find_if(fewer.begin(), fewer.end(), [order](const FewerModes& modes) {
+      return modes.dynamics.A.rows() <= order;
+    });
+    if (left == fewer.end() || left->dynamics.A.rows() <= refused ||
+        !(left->error < equal_errors * simple_fit.error))
+      return std::nullopt;
+    Candidate eliminated = rich;
+    eliminated.recipe.eliminated_from = rich.recipe.order;
+    eliminated.recipe.order = static_cast<int>(left->dynamics.A.rows());
+    eliminated.recipe.refined_rows = simple.recipe.refined_rows;
+    return accepted(eliminated, fit(eliminated));
+  };
   while (taken - refused > 1) {
     const int order = (refused + taken) / 2;
-    if (auto simple = accepted(order)) {
+    if (auto simple = accepted_of(order)) {
       best = std::move(simple);
-      taken = order;
+      taken = best->recipe.order;
     } else {
       refused = order;
     }
@@ -451,7 +475,7 @@ std::vector<ScoredRecipe> Search::run() {
 }  // namespace
 
 double work_of_regression(const Recipe& recipe, Index m, Index p) {
-  const Index n = recipe.order;
+  const Index n = recipe.subspace_order();
   const double columns = double(n + n * m + m + 2);
   // A step of the refinement walks the rows twice, once with more columns.
   return double(p) * (double(n * n * (m + 1)) + columns * columns / 2) *

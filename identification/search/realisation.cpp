@@ -5,7 +5,7 @@
 #include <complex>
 #include <utility>
 
-#include "identification/fit/output_error_fit.hpp"
+#include "identification/search/mode_elimination.hpp"
 #include "identification/search/model_search.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/initial_state.hpp"
@@ -25,12 +25,10 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
     return RowRange{std::max<Index>(0, fitted - count), fitted};
   };
   if (recipe.refinement_steps > 0) {
-    StateSpaceModel refined =
-        refine_response(A, C, recipe.direct, rows.normalised(), last(recipe.refined_rows),
-                        recipe.refinement_steps, recipe.least_rate)
-            .model;
-    A = std::move(refined.A);
-    C = std::move(refined.C);
+    StateSpaceModel model =
+        refined({A, C}, recipe, rows.normalised(), last(recipe.refined_rows)).model;
+    A = std::move(model.A);
+    C = std::move(model.C);
   }
   if (recipe.fit == ResponseFit::subspace)
     return with_response(projection, A, C, recipe.direct, rows.record().period_s);
@@ -61,13 +59,14 @@ std::optional<Identified> realise(PreparedRows& rows, const Recipe& recipe,
   auto [gamma, singular_values] = projection.observability(recipe.weighting);
   const Index fitted = rows.fitted().size();
   const auto dynamics = shift_invariant_within({fitted, recipe.least_rate}, gamma, hankel.outputs,
-                                               recipe.order, recipe.stability);
+                                               recipe.subspace_order(), recipe.stability);
   if (!dynamics) return std::nullopt;
   if (recipe.refinement_steps == 0 &&
       slowest_time_constant_s(dynamics->A, rows.record().period_s) > longest_time_constant_s)
     return std::nullopt;
   const Index m = rows.record().u.cols();
   StateSpaceModel model = respond(rows, recipe, projection, *dynamics);
+  if (model.order() != recipe.order) return std::nullopt;
   Identified result;
   if (recipe.stability == Stability::enforced)
     result.warnings.push_back(

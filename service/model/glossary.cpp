@@ -198,6 +198,11 @@ struct Glossary {
        "The version is better on most blocks, but its error over all of them is not less than the "
        "champion's by the configured margin. The champion stays.",
        ""},
+      {"worse_before_change", "errs too much before the change",
+       "What a change of the equipment did is as much from either side of it: the champion errs by "
+       "it on what follows, and a good version on what came before. This one errs more than twice "
+       "as much there. It fits the few days since, and not how the equipment is used.",
+       "Nothing: a later window shows more of it."},
       {"worse_in_regime", "worse in an operating regime",
        "The version is worse than the champion, with confidence, in an operating regime that "
        "this has served.",
@@ -207,11 +212,6 @@ struct Glossary {
        "the time, the version errs no less than the champion. It was run on the last cycles of "
        "those that its record does not have.",
        ""},
-      {"worse_before_change", "errs too much before the change",
-       "What a change of the equipment did is as much from either side of it: the champion errs by "
-       "it on what follows, and a good version on what came before. This one errs more than twice "
-       "as much there. It fits the few days since, and not how the equipment is used.",
-       "Nothing: a later window shows more of it."},
   };
 };
 

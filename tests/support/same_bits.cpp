@@ -39,7 +39,8 @@ bool same(const Recipe& a, const Recipe& b) {
   return a.order == b.order && a.horizon == b.horizon && a.weighting == b.weighting &&
          a.stability == b.stability && a.fit == b.fit && a.direct == b.direct &&
          a.operating_point == b.operating_point && a.refinement_steps == b.refinement_steps &&
-         a.refined_rows == b.refined_rows && a.least_rate == b.least_rate;
+         a.refined_rows == b.refined_rows && a.eliminated_from == b.eliminated_from &&
+         a.least_rate == b.least_rate;
 }
 
 bool same(const Identified& a, const Identified& b) {

@@ -347,6 +347,31 @@ TEST(Parsimony, AnIntegratorIsNoStaticGain) {
   RecordProperty("right", std::to_string(right));
 }
 
+/// One state, with a disturbance that oscillates by itself: a generator of two states.
+TEST(Parsimony, AnOscillationByItselfGetsTwoStates) {
+  const std::uint64_t records = records_asked();
+  constexpr Index rows = 1500;
+  std::uint64_t right = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    Matrix u(rows, 1), y(rows, 1);
+    const double pole = std::exp(-1 / (8 + 32 * noise.uniform()));
+    double x = 0;
+    for (Index t = 0; t < rows; ++t) {
+      u(t, 0) = t % 7 == 0 ? noise.normal() : u(t - 1, 0);
+      y(t, 0) = x;
+      x = pole * x + (1 - pole) * u(t, 0);
+    }
+    const double deviation = std::sqrt((y.array() - y.mean()).square().mean());
+    const double phase = 6 * noise.uniform();
+    for (Index t = 0; t < rows; ++t)
+      y(t, 0) += deviation * (0.3 * std::sin(0.1 * double(t) + phase) + 0.1 * noise.normal());
+    right += identified(contiguous_record(1, u, y)).recipe.order == 3;
+  }
+  EXPECT_GE(right, records * 19 / 20);
+  RecordProperty("right", std::to_string(right));
+}
+
 TEST(Parsimony, AModeThatStandsForADriftIsSaid) {
   int said = 0, without_drift = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
