@@ -205,5 +205,7 @@ int main(int argc, char** argv) {
     told = true;
   }
   print(parts, participant > 0);
+  // Its threads make handshakes by OpenSSL, which is taken down when main ends.
+  if (participant > 0) dds_delete(participant);
   return 0;
 }
