@@ -35,9 +35,10 @@ struct Recipe {
   /// nearest to the end.
   int refinement_steps = 0;
   Index refined_rows = 0;
-  /// The modes are those that are left of a refined model of this order, without the ones that the
-  /// rows miss least; 0: the subspace has as many as it shows.
+  /// The order of the refined model of which so many modes are left, without those that the rows
+  /// miss least; 0: none is taken out.
   int eliminated_from = 0;
+  /// That of the model which the subspace gives.
   int subspace_order() const { return eliminated_from > 0 ? eliminated_from : order; }
 };
 

@@ -86,7 +86,7 @@ double rows_s(const IdentifyOutcome& outcome) {
   return outcome.identified.model.period_s * static_cast<double>(outcome.identify.rows);
 }
 
-/// 1 / |s| of the slowest mode [s]: an oscillation's, over 2 pi, however long it lasts.
+/// 1 / |s| of the slowest mode [s]: of an oscillation that does not decay, its period over 2 pi.
 double slowest_mode_s(const StateSpaceModel& model) {
   double slowest = 0;
   for (const std::complex<double>& mode : identification::eigenvalues(model.A))

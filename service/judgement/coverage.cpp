@@ -31,10 +31,8 @@ double uncovered_share(const std::map<int, ServedRegime>& served) {
 std::vector<Time> earlier_blocks(const League& league, const std::vector<int>& regimes,
                                  const Member& member, Time changed) {
   std::vector<Time> begins;
-  for (const bool before : {true, false})
-    for (const auto& [number, regime] :
-         served_regimes(league, regimes, member,
-                        before ? TimeRange{INT64_MIN, changed} : TimeRange{changed, INT64_MAX})) {
+  for (const TimeRange range : {TimeRange{INT64_MIN, changed}, TimeRange{changed, INT64_MAX}})
+    for (const auto& [number, regime] : served_regimes(league, regimes, member, range)) {
       const auto& blocks = regime.blocks;
       const auto record = std::ranges::lower_bound(
           blocks, member.record, {}, [&](std::size_t i) { return league.blocks[i].range.begin; });
@@ -53,12 +51,12 @@ std::pair<double, double> served_errors(const League& league,
                                         const Member& member, bool bounded) {
   Sums usual;
   for (const Block& block : league.blocks)
-    if (counts(block) && block.range.begin >= member.window.begin &&
+    if (bounded && counts(block) && block.range.begin >= member.window.begin &&
         block.range.end <= member.window.end)
       usual.add(block, block.output_square);
   const auto add = [&](Sums& sums, const Member& of, const Block& block, double weight) {
     std::vector<double> square = find(of.scores, block.range.begin)->square;
-    for (std::size_t q = 0; bounded && usual.rows > 0 && q < square.size(); ++q)
+    for (std::size_t q = 0; usual.rows > 0 && q < square.size(); ++q)
       square[q] = std::min(square[q], usual.error(std::ptrdiff_t(q)) / usual.rows);
     sums.add(block, square, weight);
   };
