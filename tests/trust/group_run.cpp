@@ -198,6 +198,8 @@ class Grader {
                          const EquipmentConfig& equipment) {
     const Truth truth(known_.truth, known_.simulated, spacecraft_, equipment, extent_, orbit_ns());
     const auto tenures = tenures_of(made, spacecraft_.name, equipment.name, extent_.begin);
+    const auto versions =
+        version_curves(truth, versions_of(made, spacecraft_.name, equipment.name));
     auto parameters = InputExpressions(equipment.inputs, equipment.derived).parameters();
     parameters.insert(parameters.end(), equipment.outputs.begin(), equipment.outputs.end());
     const auto honest = [&](storage::TimeRange range) {
@@ -211,11 +213,11 @@ class Grader {
         equipment.name,
         score_publications(truth, tenures, changes_),
         score_changes(
-            truth, tenures, changes_,
+            truth, tenures, versions, changes_,
             [&](storage::Time begin) { return oracle_of(equipment, begin); }, honest),
         {},
         {},
-        regret(truth, tenures, versions_of(made, spacecraft_.name, equipment.name)),
+        regret(truth, tenures, versions),
         champion_curve(truth, tenures),
         truth.output_extremes({group_.start, group_.start + group_.duration}, orbit_ns() / 10)};
     for (std::size_t i = 0; i < changes_.size(); ++i)

@@ -31,8 +31,8 @@ namespace trust {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Publication, version, time, judged_on, mrse_percent,
                                    replaced_mrse_percent, resolution_percent)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ChangeScore, kind, begin, mattered, orbits, worst_ratio, oracle,
-                                   is_asked)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ChangeScore, kind, begin, mattered, orbits, hindsight_orbits,
+                                   worst_ratio, oracle, is_asked)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attempted, equipment, window, time, trigger, outcome, reason,
                                    version)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftRequest, equipment, time)

@@ -116,6 +116,7 @@ void Figures::add(const ScenarioOutcome& outcome) {
       if (!change.mattered) continue;
       ++changes;
       recovered += !change.missed();
+      hindsight += !change.missed_in_hindsight();
       asked += change.missed() && change.is_asked;
       orbits_to_recover.push_back(change.orbits);
     }
@@ -149,6 +150,10 @@ double Figures::recovered_fraction() const {
 
 double Figures::recovered_or_asked_fraction() const {
   return changes > 0 ? static_cast<double>(recovered + asked) / changes : 1;
+}
+
+double Figures::hindsight_fraction() const {
+  return changes > 0 ? static_cast<double>(hindsight) / changes : 1;
 }
 
 double Figures::publications_per_month() const {
@@ -187,6 +192,7 @@ nlohmann::ordered_json to_json(const Outcomes& outcomes, bool intervals) {
       {"changes", figures.changes},
       {"recovered_fraction", figures.recovered_fraction()},
       {"recovered_or_asked_fraction", figures.recovered_or_asked_fraction()},
+      {"hindsight_fraction", figures.hindsight_fraction()},
       {"recovery_median_orbits", figures.recovery_quantile(0.5)},
       {"regret", figures.regret()},
       {"regret_p90", figures.regret_quantile(0.9)},
@@ -282,10 +288,11 @@ std::string story(const ScenarioOutcome& outcome) {
           publication.worse_over_tolerance(), publication.wrong() ? " WRONG" : "");
     for (const ChangeScore& change : equipment.changes)
       text += fmt::format(
-          "    day {:.2f} {}: {}, bad for {} orbits, at most {:.3g} times the "
-          "oracle{}\n",
+          "    day {:.2f} {}: {}, bad for {} orbits ({} in hindsight), at most {:.3g} "
+          "times the oracle{}\n",
           days_after(start, change.begin), change.kind,
-          change.mattered ? "mattered" : "did not matter", change.orbits, change.worst_ratio,
+          change.mattered ? "mattered" : "did not matter", change.orbits, change.hindsight_orbits,
+          change.worst_ratio,
           !change.missed()  ? ""
           : change.is_asked ? " MISSED, an operator was asked"
                             : " MISSED");

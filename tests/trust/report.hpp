@@ -22,6 +22,7 @@ struct Figures {
   int bias_wrong = 0;  // in scenarios with a bias
   int changes = 0;     // that mattered
   int recovered = 0;
+  int hindsight = 0;        // recovered by the best versions of those that existed
   int asked = 0;            // of the others, those of which an operator was asked
   double quiet_months = 0;  // of equipment to which nothing happened
   int quiet_publications = 0;
@@ -33,6 +34,7 @@ struct Figures {
   void add(const ScenarioOutcome& outcome);
   double recovered_fraction() const;
   double recovered_or_asked_fraction() const;
+  double hindsight_fraction() const;
   double regret() const;
   double regret_quantile(double share) const;  // 1 where nothing changed
   double publications_per_month() const;       // that replace a version, of one equipment

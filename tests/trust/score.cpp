@@ -64,6 +64,21 @@ std::optional<Comparison> compare(const ErrorCurve& error, const ErrorCurve& ora
   return Comparison{*mine > oracle_factor * *best + resolution, *mine / *best};
 }
 
+/// The longest range of bad orbits, of which only some count.
+class BadOrbits {
+ public:
+  void add(bool is_bad, bool counts) {
+    if (!is_bad) now_ = 0;
+    now_ += is_bad && counts;
+    longest_ = std::max(longest_, now_);
+  }
+  std::int64_t longest() const { return longest_; }
+
+ private:
+  std::int64_t now_ = 0;
+  std::int64_t longest_ = 0;
+};
+
 }  // namespace
 
 double Publication::worse_over_tolerance() const {
@@ -132,13 +147,16 @@ ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures
   return curve;
 }
 
+std::vector<VersionCurve> version_curves(const Truth& truth, const std::vector<Tenure>& versions) {
+  std::vector<VersionCurve> curves;
+  for (const auto& [since, version, model] : versions)
+    if (model && since < truth.extent().end)
+      curves.push_back({version, since, truth.free_run(*model, {since, truth.extent().end})});
+  return curves;
+}
+
 std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenures,
-                             const std::vector<Tenure>& versions) {
-  std::map<std::int64_t, ErrorCurve> curves;
-  for (const Tenure& version : versions)
-    if (version.model && version.since < truth.extent().end)
-      curves.emplace(version.version,
-                     truth.free_run(*version.model, {version.since, truth.extent().end}));
+                             const std::vector<VersionCurve>& versions) {
   const ErrorCurve frame = truth.empty_curve();
   const double resolution = truth.resolution_percent(truth.extent());
   double sum = 0;
@@ -146,20 +164,19 @@ std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenu
   const std::int64_t last = frame.block_of(truth.extent().end) - least_judged_orbits;
   for (std::int64_t block = 0; block <= last; ++block) {
     const storage::Time now = frame.begin_of(block);
-    const auto error = [&](std::int64_t version) -> std::optional<double> {
-      const auto curve = curves.find(version);
-      if (curve == curves.end()) return std::nullopt;
-      const auto mrse = curve->second.mrse_percent(block, block + judged_orbits);
-      return mrse ? std::optional(std::max(*mrse, resolution)) : std::nullopt;
-    };
     const Tenure& champion = at(tenures, std::max(now, tenures.front().since));
-    if (champion.version == 0) continue;
-    const auto own = error(champion.version);
+    std::optional<double> own;
+    double best = std::numeric_limits<double>::infinity();
+    for (const VersionCurve& version : versions) {
+      const bool runs = version.version == champion.version;
+      if (!runs && version.since > now) continue;
+      const auto mrse = version.error.mrse_percent(block, block + judged_orbits);
+      if (!mrse) continue;
+      const double error = std::max(*mrse, resolution);
+      if (runs) own = error;
+      best = std::min(best, error);
+    }
     if (!own) continue;
-    double best = *own;
-    for (const Tenure& version : versions)
-      if (version.since <= now)
-        if (const auto other = error(version.version)) best = std::min(best, *other);
     // A run that diverged is as bad as any: it counts as a hundred times the best.
     sum += std::log(std::min(*own / best, 100.0));
     ++orbits;
@@ -169,6 +186,7 @@ std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenu
 }
 
 std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,
+                                       const std::vector<VersionCurve>& versions,
                                        const std::vector<TrueChange>& changes, const Oracle& oracle,
                                        const std::function<bool(storage::TimeRange)>& honest) {
   std::vector<ChangeScore> scores;
@@ -183,7 +201,12 @@ std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Ten
     const ErrorCurve old = run(truth, at(tenures, change.begin), followed);
     const double resolution = truth.resolution_percent(followed);
     ChangeScore score{.kind = change.kind, .begin = change.begin, .oracle = best};
-    std::int64_t bad = 0;
+    const auto is_bad = [&](const ErrorCurve& curve, std::int64_t block) {
+      const auto it = compare(curve, best, block, smoothing_orbits, resolution);
+      return !it || it->bad;
+    };
+    BadOrbits without_a_break;
+    BadOrbits in_hindsight;
     // The first orbit of the change is half of the old spacecraft.
     for (std::int64_t block = champion.block_of(followed.begin) + 1;
          block + smoothing_orbits <= champion.block_of(followed.end); ++block) {
@@ -192,11 +215,18 @@ std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Ten
       const auto now = compare(champion, best, block, smoothing_orbits, resolution);
       if (!now) continue;
       score.worst_ratio = std::max(score.worst_ratio, now->ratio);
-      if (!now->bad) bad = 0;
       const storage::Time begin = champion.begin_of(block);
-      if (now->bad && honest({begin, begin + orbit})) ++bad;
-      score.orbits = std::max(score.orbits, bad);
+      const bool counts = honest({begin, begin + orbit});
+      without_a_break.add(now->bad, counts);
+      in_hindsight.add(now->bad && std::all_of(versions.begin(), versions.end(),
+                                               [&](const VersionCurve& version) {
+                                                 return version.since > begin ||
+                                                        is_bad(version.error, block);
+                                               }),
+                       counts);
     }
+    score.orbits = without_a_break.longest();
+    score.hindsight_orbits = in_hindsight.longest();
     scores.push_back(score);
   }
   return scores;

@@ -57,12 +57,16 @@ struct ChangeScore {
   storage::Time begin = 0;
   bool mattered = false;    // the champion of then became worse than the factor allows
   std::int64_t orbits = 0;  // of honest telemetry, the longest range with a champion that was
-  double worst_ratio = 0;   // of the champion's error to the oracle's
+  /// The same if the best version of those that existed had run at each orbit: with less, no rule
+  /// that chooses among these versions does it.
+  std::int64_t hindsight_orbits = 0;
+  double worst_ratio = 0;  // of the champion's error to the oracle's
   ErrorCurve oracle;
   /// A version waits for an operator, since a sensor's bias may look like the change, within
   /// recovery_orbits after it has grown.
   bool is_asked = false;
   bool missed() const { return mattered && orbits > recovery_orbits; }
+  bool missed_in_hindsight() const { return mattered && hindsight_orbits > recovery_orbits; }
 };
 
 /// A true change of the plant; those that begin together are one.
@@ -84,15 +88,25 @@ std::vector<Publication> score_publications(const Truth& truth, const std::vecto
 /// Error of what simulators ran, orbit by orbit.
 ErrorCurve champion_curve(const Truth& truth, const std::vector<Tenure>& tenures);
 
+/// Error of a version from when it was made, orbit by orbit.
+struct VersionCurve {
+  std::int64_t version = 0;
+  storage::Time since = 0;
+  ErrorCurve error;
+};
+
+/// Of all versions with a model; `versions` has the time at which each was made, and ascends.
+std::vector<VersionCurve> version_curves(const Truth& truth, const std::vector<Tenure>& versions);
+
 /// Geometric mean, over the orbits with a champion, of the champion's error over the orbit and the
 /// next 29, over the least one of any version that existed by then; errors below the sensors' own
-/// resolution count as that. `versions` has all of them, by the time at which they were made.
-/// Absent without a champion.
+/// resolution count as that. Absent without a champion.
 std::optional<double> regret(const Truth& truth, const std::vector<Tenure>& tenures,
-                             const std::vector<Tenure>& versions);
+                             const std::vector<VersionCurve>& versions);
 
 /// `honest` says whether an orbit's telemetry of the equipment is without faults that mislead.
 std::vector<ChangeScore> score_changes(const Truth& truth, const std::vector<Tenure>& tenures,
+                                       const std::vector<VersionCurve>& versions,
                                        const std::vector<TrueChange>& changes, const Oracle& oracle,
                                        const std::function<bool(storage::TimeRange)>& honest);
 

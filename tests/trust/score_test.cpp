@@ -81,10 +81,11 @@ class Score : public testing::Test {
     EXPECT_EQ(scores.size(), 1U);
     return scores.front();
   }
-  ChangeScore score(const std::vector<Tenure>& tenures, double oracle_gain) const {
+  ChangeScore score(const std::vector<Tenure>& tenures, double oracle_gain,
+                    const std::vector<Tenure>& versions = {}) const {
     return only(score_changes(
-        truth(), tenures, {change_}, [=](auto) { return model_of(oracle_gain); },
-        [](auto) { return true; }));
+        truth(), tenures, version_curves(truth(), versions), {change_},
+        [=](auto) { return model_of(oracle_gain); }, [](auto) { return true; }));
   }
 
   const storage::Time end_ = at(orbits);
@@ -113,12 +114,13 @@ TEST_F(Score, RegretIsTheChampionsErrorOverThatOfTheBestVersionOfThen) {
   // Version 2 errs half as much and exists for all but the first 10 orbits of the champion's
   // tenure.
   const std::vector<Tenure> versions = {tenure(5, 1, 2.4), tenure(15, 2, 2.2)};
+  const auto curves = version_curves(truth(), versions);
   const std::vector<Tenure> served = {{start, 0, {}}, versions[0]};
   const std::int64_t judged = orbits - least_judged_orbits - 5 + 1;
   const double all_but_ten = double(judged - 10) / double(judged);
-  EXPECT_NEAR(*regret(truth(), served, versions), std::pow(2, all_but_ten), 0.02);
-  EXPECT_NEAR(*regret(truth(), {{start, 0, {}}, versions[1]}, versions), 1, 1e-12);
-  EXPECT_EQ(regret(truth(), {{start, 0, {}}}, versions), std::nullopt);
+  EXPECT_NEAR(*regret(truth(), served, curves), std::pow(2, all_but_ten), 0.02);
+  EXPECT_NEAR(*regret(truth(), {{start, 0, {}}, versions[1]}, curves), 1, 1e-12);
+  EXPECT_EQ(regret(truth(), {{start, 0, {}}}, curves), std::nullopt);
 }
 
 TEST_F(Score, CountsAVersionThatIsWorseThanWhatItReplacedAsWrong) {
@@ -198,11 +200,20 @@ TEST_F(ScoreOfAChange, FindsAChangeThatIsLostAgain) {
   EXPECT_TRUE(score(tenures, 4).missed());
 }
 
+TEST_F(ScoreOfAChange, TellsWhetherAVersionThatWasMadeInTimeWouldHaveFollowed) {
+  const ChangeScore in_time = score(good_service(), 4, {tenure(change_orbit + 12, 2, 4)});
+  EXPECT_TRUE(in_time.missed());
+  EXPECT_NEAR(double(in_time.hindsight_orbits), 12, 2);
+  EXPECT_FALSE(in_time.missed_in_hindsight());
+  EXPECT_TRUE(score(good_service(), 4, {tenure(change_orbit + 30, 2, 4)}).missed_in_hindsight());
+  EXPECT_TRUE(score(good_service(), 4).missed_in_hindsight());
+}
+
 TEST_F(ScoreOfAChange, DoesNotCountOrbitsWhoseTelemetryFaults) {
   const auto honest = [](storage::TimeRange range) { return range.begin >= at(change_orbit + 30); };
   const auto oracle = [](auto) { return model_of(4); };
   const ChangeScore change =
-      only(score_changes(truth(), good_service(), {change_}, oracle, honest));
+      only(score_changes(truth(), good_service(), {}, {change_}, oracle, honest));
   EXPECT_LT(change.orbits, 15);
   EXPECT_GT(change.orbits, 5);
 }
@@ -226,8 +237,8 @@ TEST_F(ScoreOfAgeing, CountsFromWhereTheOldChampionIsTooBad) {
     return model_of(2 + 2 * std::min(1.0, grown));
   };
   const auto always = [](auto) { return true; };
-  EXPECT_FALSE(only(score_changes(truth(), tenures, {change_}, oracle, always)).missed());
-  EXPECT_TRUE(only(score_changes(truth(), good_service(), {change_}, oracle, always)).missed());
+  EXPECT_FALSE(only(score_changes(truth(), tenures, {}, {change_}, oracle, always)).missed());
+  EXPECT_TRUE(only(score_changes(truth(), good_service(), {}, {change_}, oracle, always)).missed());
 }
 
 TEST(TrueChanges, AreWhatStays) {
