@@ -209,14 +209,18 @@ std::variant<FileRanges, Refusal> parse_ranges(const DataRequest& request, Index
 }
 
 /// Puts the derived inputs in the place of the columns that they follow from.
-void derive_inputs(InputExpressions& expressions, IdentifyData& data) {
+std::optional<Refusal> derive_inputs(InputExpressions& expressions, IdentifyData& data) {
   const Index before = data.record.rows();
   data.record = expressions.evaluate(std::move(data.record));
+  if (before != 0 && data.record.rows() == 0)
+    return Refusal{fmt::format(
+        "a derived input has no finite value in any of the {} rows; mend its --derive", before)};
   if (const Index lost = before - data.record.rows(); lost != 0)
     data.warnings.push_back(
         fmt::format("at {} of {} rows a derived input has no finite value; they were left out and "
                     "the record is split there",
                     lost, before));
+  return std::nullopt;
 }
 
 void warn_of_held_rows(IdentifyData& data) {
@@ -349,7 +353,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   data.file_ticks = std::move(grid.tick_of_row);
   if (request.screening) data.left_out = leave_out_faults(data.record, columns);
   if (!request.hold_ns) warn_of_held_rows(data);
-  derive_inputs(expressions, data);
+  if (auto refusal = derive_inputs(expressions, data)) return *refusal;
   const auto record_row = [&](Index row) {
     return first_row_at(data.record, data.file_ticks[static_cast<std::size_t>(row)]);
   };

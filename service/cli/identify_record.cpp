@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,6 +33,12 @@ struct Samples {
   std::vector<std::int64_t> time_ns;
   std::vector<double> value;
   std::vector<std::size_t> part;
+
+  void add(std::int64_t time, double sample, std::size_t in_part) {
+    time_ns.push_back(time);
+    value.push_back(sample);
+    part.push_back(in_part);
+  }
 };
 
 /// `time_ns` are those of the rows.
@@ -40,9 +48,7 @@ std::vector<Samples> samples_of(const IdentifyTable& table,
   for (std::size_t c = 0; c < samples.size(); ++c)
     for (std::size_t row = 0; row < table.rows; ++row) {
       if (table.columns[c].is_blank[row] != 0) continue;
-      samples[c].time_ns.push_back(time_ns[row]);
-      samples[c].value.push_back(table.columns[c].value[row]);
-      samples[c].part.push_back(table.part[row]);
+      samples[c].add(time_ns[row], table.columns[c].value[row], table.part[row]);
     }
   return samples;
 }
@@ -114,6 +120,11 @@ std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const 
                     "least {}{}",
                     *request.period_s, slowest.name, duration_text(slowest.step_ns),
                     sample_hold_periods, hold_text(least), hold_advice)};
+  if (period < slowest.step_ns && !request.hold_ns)
+    warnings.push_back(fmt::format(
+        "--period {} is shorter than {}, the usual step of {}: its values are repeated, and the "
+        "model has the repeats in it",
+        *request.period_s, duration_text(slowest.step_ns), slowest.name));
   return period;
 }
 
@@ -248,20 +259,51 @@ identification::TickSet ticks_between_parts(const IdentifyTable& table,
   return between;
 }
 
-/// Says of each column that speaks at every tick how often an older value serves in its place.
-void warn_of_held_values(const IdentifyTable& table, const std::vector<Samples>& samples,
-                         std::int64_t period_ns, std::vector<std::string>& warnings) {
+/// Whether a column comes when it changes: then its steps from one tick to the next leave out the
+/// small ones, which are as frequent as larger ones in what comes as it is.
+bool comes_on_change(const Samples& samples, std::int64_t period_ns) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.value.size(); ++i)
+    if (samples.part[i] == samples.part[i - 1] &&
+        samples.time_ns[i] - samples.time_ns[i - 1] <= period_ns + period_ns / 2)
+      steps.push_back(std::abs(samples.value[i] - samples.value[i - 1]));
+  if (steps.empty()) return true;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double small = *middle / 4;
+  const auto few = std::count_if(steps.begin(), steps.end(), [=](double x) { return x <= small; });
+  return 16 * few < static_cast<std::ptrdiff_t>(steps.size());
+}
+
+/// Ends the hold of each sample of a column that speaks at every tick, whatever it says, where the
+/// next one is due and does not come. Says how often it did not.
+void mark_what_did_not_come(const IdentifyTable& table, std::vector<Samples>& samples,
+                            std::int64_t period_ns, std::vector<std::string>& warnings) {
+  const std::string serve = fmt::format("--hold {} lets the value before serve",
+                                        duration_text(sample_hold_periods * period_ns));
   for (std::size_t c = 0; c < samples.size(); ++c) {
     const auto steps = steps_of(samples[c].time_ns, samples[c].part);
     if (quantile(steps, 0.5) > period_ns) continue;
-    const auto late = std::count_if(steps.begin(), steps.end(), [&](std::int64_t step) {
-      return step > period_ns + period_ns / 2;
-    });
+    const bool on_change = comes_on_change(samples[c], period_ns);
+    Samples marked;
+    std::size_t late = 0;
+    for (std::size_t i = 0; i < samples[c].value.size(); ++i) {
+      const std::int64_t due = marked.time_ns.empty() ? 0 : marked.time_ns.back() + period_ns;
+      const bool is_late = i > 0 && samples[c].part[i] == samples[c].part[i - 1] &&
+                           samples[c].time_ns[i] > due + period_ns / 2;
+      late += is_late;
+      if (is_late && !on_change)
+        marked.add(due, std::numeric_limits<double>::quiet_NaN(), samples[c].part[i]);
+      marked.add(samples[c].time_ns[i], samples[c].value[i], samples[c].part[i]);
+    }
     if (static_cast<double>(late) > held_worth_a_word * static_cast<double>(steps.size()))
       warnings.push_back(fmt::format(
-          "column {} is silent {} times where its next sample was due, and the value before "
-          "serves on; --hold {} leaves such ticks out",
-          table.names[c], late, duration_text(period_ns)));
+          "column {} is silent {} times where its next sample was due, and {}", table.names[c],
+          late,
+          on_change ? fmt::format("the value before serves on; --hold {} leaves such ticks out",
+                                  duration_text(period_ns))
+                    : "such ticks are left out; " + serve));
+    samples[c] = std::move(marked);
   }
 }
 
@@ -290,8 +332,9 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
         "ticks stand {0} behind the multiples of {1}, where all columns have come, as "
         "in a service (--phase 0s, or phase = \"0s\" there, puts them on the multiples)",
         duration_text(placed.phase_ns), duration_text(period_ns)));
-  const auto samples = samples_of(table, placed.time_ns);
-  const std::vector<std::uint8_t> usable(table.rows, 1);
+  auto samples = samples_of(table, placed.time_ns);
+  if (!request.hold_ns) mark_what_did_not_come(table, samples, period_ns, made.warnings);
+  const std::vector<std::uint8_t> usable(2 * table.rows, 1);  // not finite counts as unusable
   std::vector<identification::ChannelSamples> channels;
   for (const Samples& column : samples)
     channels.push_back(
@@ -312,7 +355,6 @@ std::variant<GridRecord, Refusal> put_on_grid(const IdentifyTable& table, std::s
         "{} reaches across them",
         complete, ticks, duration_text(period_ns), gaps.name, hold_text(gaps.longest_ns),
         duration_text(hold_ns), mend);
-  if (!request.hold_ns) warn_of_held_values(table, samples, period_ns, made.warnings);
   std::size_t lost = 0;
   for (std::size_t row = 0; row < table.rows; ++row)
     lost += std::any_of(table.columns.begin(), table.columns.end(),

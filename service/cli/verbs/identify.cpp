@@ -160,6 +160,10 @@ int print_rejection(const Verdict& verdict, const Arguments& arguments, const Id
   std::string advice = data.advice.empty() ? "" : "; " + data.advice;
   if (verdict.code == identification::VerdictCode::too_few_samples && !arguments.data.identify)
     advice += "; these are the first two thirds of the file: --identify 0:ROWS takes more of them";
+  if (verdict.code == identification::VerdictCode::too_few_samples &&
+      !arguments.model.delays.empty())
+    advice += fmt::format("; --delay {} takes as many rows from the begin of each stretch",
+                          fmt::join(arguments.model.delays, " "));
   const std::vector<std::string> left_out = left_out_sentences(data);
   if (arguments.json) {
     const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},

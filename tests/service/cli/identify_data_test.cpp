@@ -1,6 +1,9 @@
 // `identify` and, through the archive, the service get the same rows from the same file.
 #include "service/cli/identify_data.hpp"
 
+#include <fstream>
+#include <functional>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -171,6 +174,48 @@ TEST_F(IdentifyRows, ThatCameLateAreInTheirPlace) {
   EXPECT_EQ(late.record.segments, ordered.record.segments);
   EXPECT_EQ(late.record.u, ordered.record.u);
   EXPECT_EQ(late.record.y, ordered.record.y);
+}
+
+/// Ticks with a value for all columns, where y is written in some of 400 rows; by default.
+identification::Index complete_ticks(const std::filesystem::path& folder,
+                                     const std::function<std::optional<double>(int)>& y) {
+  std::string text = "time,u,y\n";
+  for (int i = 0; i < 400; ++i) {
+    const auto value = y(i);
+    text += fmt::format("{},{},{}\n", i, i / 20 % 3, value ? fmt::format("{:.6g}", *value) : "");
+  }
+  std::ofstream(folder / "silent.csv") << text;
+  DataRequest request;
+  request.file = folder / "silent.csv";
+  request.inputs = {"u"};
+  request.outputs = {"y"};
+  request.reading.time.column = "time";
+  request.screening = false;
+  return std::get<IdentifyData>(read_data(request)).record.rows();
+}
+
+TEST_F(IdentifyRows, AreLeftOutWhereAColumnOfEveryTickIsSilent) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  int written = 0;
+  const auto missing = [&](int i) -> std::optional<double> {
+    if (i % 7 == 3 || i % 11 == 5) return std::nullopt;
+    ++written;
+    return 20 + normal(random);
+  };
+  EXPECT_EQ(complete_ticks(folder(), missing), written);
+}
+
+TEST_F(IdentifyRows, KeepWhatAColumnSaidWhereItComesWhenItChanges) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  double truth = 20, sent = 0;
+  const auto beyond_a_dead_band = [&](int) -> std::optional<double> {
+    truth += normal(random);
+    if (std::abs(truth - sent) < 0.4) return std::nullopt;
+    return sent = truth;
+  };
+  EXPECT_GT(complete_ticks(folder(), beyond_a_dead_band), 380);  // a value serves three ticks
 }
 
 }  // namespace
