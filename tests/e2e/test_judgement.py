@@ -164,7 +164,12 @@ class Judgement(EndToEnd):
         tried = [row for row in self.attempts() if row[0] == "LATER"]
         self.assertEqual([row[1] for row in tried], ["backfill"] * 10)
         status, text = self.reident("backfill", "--json", *config)
-        self.assertEqual((status, json.loads(text)["windows"]), (0, 0), "each window once")
+        again = json.loads(text)
+        self.assertEqual((status, again["windows"]), (0, 0), "each window once")
+        overview = json.loads(self.reident("overview", "--json", *config)[1])
+        self.assertEqual((again["waiting"], again["alarms"] + 1),  # one of them: no service runs
+                         (sum(len(row["waiting"]) for row in overview["equipment"]),
+                          len(overview["alarms"])))
         for equipment in ("PLANT", "LATER"):
             status, text = self.reident("reproduce", f"SAT/{equipment}", "--json", *config)
             self.assertEqual(status, 0, text)

@@ -11,6 +11,7 @@
 #include "service/cli/phase_advice.hpp"
 #include "service/cli/time_options.hpp"
 #include "service/cli/verb.hpp"
+#include "service/history/stored_readers.hpp"
 #include "service/operations/commands.hpp"
 #include "service/support/progress.hpp"
 #include "service/support/stop_signal.hpp"
@@ -51,10 +52,15 @@ std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
                              joined(names))};
 }
 
-void print(const BackfillProgress& progress, bool json) {
+void print(const BackfillProgress& progress, storage::Database& database, bool json) {
+  const history::StoredHistory history(database);
+  const std::size_t waiting = history.waiting().size(), alarms = history.alarms().size();
   if (json) {
-    const nlohmann::ordered_json object = {
-        {"windows", progress.windows}, {"done", progress.done}, {"approved", progress.approved}};
+    const nlohmann::ordered_json object = {{"windows", progress.windows},
+                                           {"done", progress.done},
+                                           {"approved", progress.approved},
+                                           {"waiting", waiting},
+                                           {"alarms", alarms}};
     fmt::print("{}\n", object.dump());
     return;
   }
@@ -62,6 +68,9 @@ void print(const BackfillProgress& progress, bool json) {
              progress.approved);
   if (progress.done < progress.windows)
     fmt::print("stopped; the same command goes on where it ended\n");
+  if (waiting + alarms > 0)
+    fmt::print("{} versions wait for an operator, {} alarms stand: reident overview shows them\n",
+               waiting, alarms);
 }
 
 int run(const Arguments& arguments) {
@@ -97,7 +106,7 @@ int run(const Arguments& arguments) {
           return !stop.token().stop_requested();
         });
     bar.clear();
-    print(progress, arguments.json);
+    print(progress, database, arguments.json);
     return progress.done == progress.windows ? exit_done : exit_failed;
   });
 }
@@ -109,7 +118,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--config", arguments->config,
                      fmt::format("configuration of the service ({})", default_config_file));
   add_time_options(command, arguments->time, "windows that end");
-  command.add_flag("--json", arguments->json, "one JSON object with the counts");
+  command.add_flag("--json", arguments->json,
+                   "one JSON object with the counts, also of what waits and of alarms");
   command.footer(
       "Works on the file, so reidentd must not run; it publishes the champions when it starts.\n"
       "Windows that were tried are left out: stopped with Ctrl-C, the same command goes on.\n"
