@@ -1,5 +1,7 @@
 #include "service/review/verdict.hpp"
 
+#include <algorithm>
+#include <string>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -35,6 +37,22 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   return finding;
 }
 
+/// What waits to replace the version that `approved`; empty where nothing does.
+std::string waiting_text(const history::HistoryReader& history, const storage::Decision& approved) {
+  std::size_t older = 0;
+  std::int64_t newest = 0;
+  for (const history::WaitingRow& row : history.waiting()) {
+    if (row.decision.spacecraft != approved.spacecraft ||
+        row.decision.equipment != approved.equipment)
+      continue;
+    older += newest > 0;
+    newest = std::max(newest, row.decision.version);
+  }
+  if (newest == 0) return {};
+  return fmt::format("Version {} waits for an operator's answer{}. ", newest,
+                     older > 0 ? fmt::format(", as {} before it", older) : "");
+}
+
 }  // namespace
 
 Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story) {
@@ -62,9 +80,10 @@ Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& s
     verdict.conditions = conditions_of(finding_in(evidence), code, record->limits);
     break;
   }
-  if (story.version.status == "approved")
-    if (const auto failure = failure_now(history, story.attempt, story.version.number))
-      verdict.sentence = sentence(*failure) + " " + verdict.sentence;
+  if (story.version.status != "approved") return verdict;
+  verdict.sentence = waiting_text(history, last) + verdict.sentence;
+  if (const auto failure = failure_now(history, story.attempt, story.version.number))
+    verdict.sentence = sentence(*failure) + " " + verdict.sentence;
   return verdict;
 }
 

@@ -206,6 +206,18 @@ TEST_F(Waiting, ListsWhatWaitsForAnOperatorAndWhatItSupersedes) {
   EXPECT_EQ(reident({"waiting", "PUMP", "--db", "reident.db"}).status, 0);
 }
 
+TEST_F(Waiting, IsSaidOfTheChampionThatItWouldReplace) {
+  version("BDR", DecisionKind::approve);
+  const auto said = [this] { return json_of({"why", "BDR", "--db", "reident.db"})["verdict"]; };
+  EXPECT_THAT(std::string(said()), Not(HasSubstr("waits for an operator")));
+  for (int i = 0; i < 3; ++i) version("BDR", DecisionKind::wait);
+  version("MEA", DecisionKind::wait);
+  for (const std::int64_t number : {2, 4}) ask("BDR", number);
+  ask("MEA", 1);
+  EXPECT_THAT(std::string(said()),
+              HasSubstr("Version 4 waits for an operator's answer, as 1 before it. "));
+}
+
 class Configured : public test::CliTest {};
 
 TEST_F(Configured, WithoutAnyWordTheOverviewIsShown) {
