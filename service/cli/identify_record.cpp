@@ -259,20 +259,24 @@ identification::TickSet ticks_between_parts(const IdentifyTable& table,
   return between;
 }
 
-/// Whether a column comes when it changes: then its steps from one tick to the next leave out the
-/// small ones, which are as frequent as larger ones in what comes as it is.
+/// Whether a column comes when it changes. Then steps from one tick to the next leave out the small
+/// ones, which are as frequent as larger ones in what comes as it is: those within a dead band, or
+/// those of less than the least step, a quantum, which are half as many as are of it.
 bool comes_on_change(const Samples& samples, std::int64_t period_ns) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < samples.value.size(); ++i)
     if (samples.part[i] == samples.part[i - 1] &&
         samples.time_ns[i] - samples.time_ns[i - 1] <= period_ns + period_ns / 2)
       steps.push_back(std::abs(samples.value[i] - samples.value[i - 1]));
-  if (steps.empty()) return true;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double small = *middle / 4;
-  const auto few = std::count_if(steps.begin(), steps.end(), [=](double x) { return x <= small; });
-  return 16 * few < static_cast<std::ptrdiff_t>(steps.size());
+  std::sort(steps.begin(), steps.end());
+  const auto up_to = [&](double step) {
+    return std::upper_bound(steps.begin(), steps.end(), step) - steps.begin();
+  };
+  const std::ptrdiff_t none = up_to(0);
+  if (none == std::ssize(steps)) return false;
+  const std::ptrdiff_t least = up_to(1.5 * steps[static_cast<std::size_t>(none)]) - none;
+  const double median = steps[steps.size() / 2];
+  return (least >= 10 && 8 * none < least) || 16 * up_to(median / 4) < std::ssize(steps);
 }
 
 /// Ends the hold of each sample of a column that speaks at every tick, whatever it says, where the

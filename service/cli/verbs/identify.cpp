@@ -294,7 +294,8 @@ std::function<int()> declare(CLI::App& command) {
   command
       .add_option(
           "--hold", arguments->hold,
-          "how long a value serves, such as 400s, where it comes on change or seldom (3 periods)")
+          "how long a value serves, such as 400s, where it comes on change or seldom (3 periods; 1 "
+          "where it comes at every tick, whatever it is)")
       ->type_name("DURATION");
   command
       .add_option("--phase", arguments->phase,

@@ -218,5 +218,17 @@ TEST_F(IdentifyRows, KeepWhatAColumnSaidWhereItComesWhenItChanges) {
   EXPECT_GT(complete_ticks(folder(), beyond_a_dead_band), 380);  // a value serves three ticks
 }
 
+TEST_F(IdentifyRows, KeepWhatAColumnSaidWhereItsQuantumComesWhenItChanges) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  double sent = 0;
+  const auto another_value = [&](int) -> std::optional<double> {
+    const double value = std::round(20 + 7 * normal(random));
+    if (value == sent) return std::nullopt;
+    return sent = value;
+  };
+  EXPECT_EQ(complete_ticks(folder(), another_value), 400);
+}
+
 }  // namespace
 }  // namespace reident::cli::identify_data_test
