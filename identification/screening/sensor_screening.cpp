@@ -13,6 +13,8 @@
 namespace reident::identification {
 namespace {
 
+constexpr Index longest_bridged = 30;  // rows, as of a lost packet
+
 TickRange ticks_of(const Record& record, std::size_t segment, Index begin, Index end) {
   const Segment& within = record.segments[segment];
   const std::int64_t first = within.first_tick + (begin - within.begin);
@@ -40,10 +42,36 @@ std::vector<SensorFault> fills_of(const Record& record) {
   return faults;
 }
 
-Record without_faults(const Record& record, const std::vector<SensorFault>& faults) {
-  std::vector<TickRange> ticks;
-  for (const SensorFault& fault : faults) ticks.push_back(fault.ticks);
-  return without(record, united(std::move(ticks)));
+/// Gives rows [begin, end) of a channel the straight line from the row before to the row behind.
+void draw_line(Eigen::Ref<Vector> values, Index begin, Index end) {
+  const double before = values(begin - 1), rise = values(end) - before;
+  for (Index row = begin; row < end; ++row)
+    values(row) = before + rise * double(row - begin + 1) / double(end - begin + 1);
+}
+
+/// The record with a line in place of each fault: the other channels have samples there, and rows
+/// that stand still do so before and behind. Where a fault is long, or one at an end of a segment,
+/// its rows are left out.
+Record without_faults(Record record, const std::vector<SensorFault>& faults) {
+  std::vector<TickRange> left_out;
+  const Index inputs = record.u.cols();
+  for (Index c = 0; c < inputs + record.y.cols(); ++c) {
+    std::vector<TickRange> ticks;
+    for (const SensorFault& fault : faults)
+      if (fault.channel == c) ticks.push_back(fault.ticks);
+    auto values = c < inputs ? record.u.col(c) : record.y.col(c - inputs);
+    auto segment = record.segments.begin();
+    for (const TickRange& hole : united(std::move(ticks))) {
+      while (segment->first_tick + segment->size() < hole.end) ++segment;
+      const Index begin = segment->begin + (hole.begin - segment->first_tick);
+      const Index end = begin + (hole.end - hole.begin);
+      if (end - begin <= longest_bridged && begin > segment->begin && end < segment->end)
+        draw_line(values, begin, end);
+      else
+        left_out.push_back(hole);
+    }
+  }
+  return without(std::move(record), united(std::move(left_out)));
 }
 
 }  // namespace

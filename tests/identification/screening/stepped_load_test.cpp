@@ -66,6 +66,21 @@ TEST(ScreeningOfSteps, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
   EXPECT_GE(right, 19);
 }
 
+TEST(ScreeningOfSteps, FindsAFrozenSensorBesideRowsThatHoldNoSample) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    telemetry.record.y.middleRows(300, 100).setConstant(telemetry.record.y(300));
+    for (Index row = 5; row < 695; ++row) {
+      if (telemetry.random() % 30 == 0) telemetry.record.u(row) = -999;
+      if (telemetry.random() % 60 == 0) telemetry.record.y(row) = -999;
+    }
+    telemetry.record.y(300) = telemetry.record.y(399) = telemetry.record.y(310);
+    right += telemetry.found(SensorFaultKind::stuck, 1) == TickSet{{300, 400}};
+  }
+  EXPECT_GE(right, 18);
+}
+
 TEST(ScreeningOfSteps, LeavesInputsAndOutputsThatCameToRest) {
   for (const double noise : {0.0, 0.02})
     for (unsigned seed = 1; seed <= 20; ++seed) {
