@@ -81,7 +81,6 @@ bool is_unusually_quiet(const Channel& channel, const Plateau& plateau) {
 /// channels, and rows that are held begin in all of them at once.
 bool is_at_rest(const std::vector<Channel>& channels, std::size_t self, std::size_t inputs,
                 const Plateau& plateau) {
-  const Index settling = std::max<Index>(least_settling, plateau.size() / 10);
   const auto is_still = [](const Channel& channel, Index begin, Index end) {
     return movement(channel.values, begin, end) == 0;
   };
@@ -89,14 +88,18 @@ bool is_at_rest(const std::vector<Channel>& channels, std::size_t self, std::siz
   if (self < inputs)
     return std::all_of(outputs, channels.end(), [&](const Channel& output) {
       const auto [begin, end] = middle_of(plateau);
+      const Index settling = std::max(least_settling, plateau.size() / 10);
       const bool rests = is_still(output, begin, end) &&
                          !is_still(output, plateau.begin + 1, plateau.begin + settling);
       return rests || is_unusually_quiet(output, plateau);
     });
-  const Index before = plateau.begin - settling;
-  return inputs > 0 && before >= (*channels[self].segments)[plateau.segment].begin &&
-         std::all_of(channels.begin(), outputs,
-                     [&](const Channel& input) { return is_still(input, before, plateau.end); });
+  // It rests on for its dead time when they move again.
+  const Index end = middle_of(plateau).end;
+  const Index before =
+      std::max(plateau.begin - least_settling, (*channels[self].segments)[plateau.segment].begin);
+  return inputs > 0 && std::all_of(channels.begin(), outputs, [&](const Channel& input) {
+           return is_still(input, before, end);
+         });
 }
 
 bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {

@@ -98,6 +98,23 @@ TEST(ScreeningOfSteps, LeavesInputsAndOutputsThatCameToRest) {
     }
 }
 
+TEST(ScreeningOfSteps, LeavesAnOutputWithoutNoiseThatRestsAtFirstOrBetweenSteps) {
+  for (const Index rest : {0, 200})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> level(0, 5);
+      Record record{1, Matrix(600, 1), Matrix(600, 1), {{0, 600, 0}}};
+      double input = level(random), state = 0.1 * input / (1 - 0.9);
+      for (Index t = 0; t < 600; ++t) {
+        if (random() % 15 == 0 && (t < rest || t >= rest + 200)) input = level(random);
+        record.u(t) = quantised(input, 0.01);
+        record.y(t) = quantised(20 + state, 1e-5);
+        state = 0.9 * state + 0.1 * record.u(t);
+      }
+      EXPECT_TRUE(sensor_faults(record, {true, true}).empty()) << rest << " " << seed;
+    }
+}
+
 TEST(ScreeningOfSteps, FindsAnImpossibleInputWhereItSteps) {
   int right = 0;
   for (unsigned seed = 1; seed <= 50; ++seed) {
