@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "identification/screening/order_statistics.hpp"
 
 namespace reident::identification {
 namespace {
 
-constexpr Index least_stuck_rows = 20;
+constexpr Index least_stuck_rows = 20;  // where a channel rests at other times
 constexpr double longer = 2.5;          // than the longest of the others
 constexpr double by_chance = 1e-6;      // expected number of repetitions so long
 constexpr std::size_t most_stuck = 20;  // plateaus of one channel
@@ -58,14 +59,6 @@ bool another_moves(const std::vector<Channel>& channels, std::size_t self, const
   return false;
 }
 
-/// Whether the channel has a new value in nearly every row outside of these plateaus, as noise
-/// gives it: then it does not rest for want of a cause.
-bool never_rests(const Channel& channel, const std::vector<Plateau>& plateaus) {
-  Index rest = channel.values.size();
-  for (const Plateau& one : plateaus) rest -= one.size();
-  return double(channel.steps) >= restless_share * double(rest);
-}
-
 /// Whether the channel moves in the middle of the plateau, and less than half of what it does over
 /// as many rows anywhere else.
 bool is_unusually_quiet(const Channel& channel, const Plateau& plateau) {
@@ -102,6 +95,25 @@ bool is_at_rest(const std::vector<Channel>& channels, std::size_t self, std::siz
          });
 }
 
+bool is_monotonic(const Vector& values, Index begin, Index end) {
+  const auto first = values.begin() + begin, last = values.begin() + end;
+  return std::is_sorted(first, last) || std::is_sorted(first, last, std::greater<>());
+}
+
+/// Whether the channel moves little and one way where the plateau begins, or ends where it begins
+/// with the segment: one without noise slows down where it turns, and before it rests. A sensor
+/// that is stuck stops at once.
+bool slows_down(const Channel& channel, const Plateau& plateau) {
+  const Segment& segment = (*channel.segments)[plateau.segment];
+  Index begin = plateau.begin - least_settling;
+  if (begin < segment.begin) begin = plateau.end - 1;
+  const Index rows = std::min(least_settling + 1, segment.end - begin);
+  if (!is_monotonic(channel.values, begin, begin + rows)) return false;
+  const auto elsewhere = movements_elsewhere(channel, rows, plateau);
+  return !elsewhere.empty() &&
+         movement(channel.values, begin, begin + rows) < 0.5 * quantile(elsewhere, quiet);
+}
+
 bool is_repeated_elsewhere(const std::vector<Plateau>& plateaus, const Plateau& plateau) {
   const double least = repeated_share * double(plateau.size());
   return std::any_of(plateaus.begin(), plateaus.end(), [&](const Plateau& other) {
@@ -134,12 +146,21 @@ bool rests_at_end_of_range(const Channel& channel, const std::vector<Plateau>& p
   return rests_at(-1) || rests_at(1);
 }
 
+/// Plateaus that are longer than chance makes them, of a channel that else rests or never does.
+struct LongPlateaus {
+  std::vector<Plateau> plateaus;
+  /// Whether the rest of the channel has a new value in nearly every row, as noise gives it: then
+  /// it does not rest for want of a cause.
+  bool rests_nowhere_else = false;
+};
+
 /// The longest plateaus, as many as chance does not explain: each sample of the rest of the channel
 /// repeats the one before with some probability, and none of the rest is nearly as long. They are
 /// exceptions: the rest has as many plateaus at least.
-std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Plateau>& of_all) {
+LongPlateaus unusually_long(const Channel& channel, const std::vector<Plateau>& of_all) {
   const std::size_t all = of_all.size();
-  std::vector<Plateau> plateaus(std::min(all, most_stuck + 1));  // the longest, and one more
+  LongPlateaus result{std::vector<Plateau>(std::min(all, most_stuck + 1))};  // and one more
+  std::vector<Plateau>& plateaus = result.plateaus;
   if (plateaus.size() < 4) return {};  // hardly any samples to compare with
   std::partial_sort_copy(of_all.begin(), of_all.end(), plateaus.begin(), plateaus.end(),
                          [](const Plateau& a, const Plateau& b) {
@@ -150,16 +171,19 @@ std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Pl
   for (std::size_t i = 0; i < count; ++i) rest -= plateaus[i].size();
   for (; count > 0; --count) {
     const auto others = double(all - count);
-    const double log_repeats = std::log1p(-others / double(rest));
+    // One repetition more than there are: none may be by chance.
+    const double log_repeats = std::log((double(rest) - others + 1) / (double(rest) + 1));
     const auto least = double(plateaus[count - 1].size());
-    if (others >= double(count) && plateaus[count - 1].size() >= least_stuck_rows &&
+    result.rests_nowhere_else = others >= restless_share * double(rest);
+    if (others >= double(count) &&
+        (result.rests_nowhere_else || plateaus[count - 1].size() >= least_stuck_rows) &&
         least >= longer * double(plateaus[count].size()) &&
         std::log(others) + (least - 1) * log_repeats < std::log(by_chance))
       break;
     rest += plateaus[count - 1].size();
   }
   plateaus.resize(count);
-  return plateaus;
+  return result;
 }
 
 }  // namespace
@@ -167,16 +191,19 @@ std::vector<Plateau> unusually_long(const Channel& channel, const std::vector<Pl
 std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self,
                                     std::size_t inputs) {
   const Channel& channel = channels[self];
-  if (channel.longest_repeat < least_stuck_rows) return {};
+  const Index most_rows = Index(most_stuck) * channel.longest_repeat;
+  if (channel.longest_repeat < least_stuck_rows &&
+      double(channel.steps) < restless_share * double(channel.values.size() - most_rows))
+    return {};
   const std::vector<Plateau> plateaus = channel.plateaus();
-  const std::vector<Plateau> longest = unusually_long(channel, plateaus);
-  const bool never_rested = never_rests(channel, longest);
+  const auto [longest, rests_nowhere_else] = unusually_long(channel, plateaus);
   std::vector<Plateau> stuck;
   for (const Plateau& plateau : longest)
-    if (!rests_at_end_of_range(channel, plateaus, plateau, never_rested) &&
+    if (!rests_at_end_of_range(channel, plateaus, plateau, rests_nowhere_else) &&
         !is_repeated_elsewhere(plateaus, plateau) &&
-        (never_rested ? !is_at_rest(channels, self, inputs, plateau)
-                      : another_moves(channels, self, plateau)))
+        (rests_nowhere_else
+             ? !slows_down(channel, plateau) && !is_at_rest(channels, self, inputs, plateau)
+             : another_moves(channels, self, plateau)))
       stuck.push_back(plateau);
   std::sort(stuck.begin(), stuck.end(),
             [](const Plateau& a, const Plateau& b) { return a.begin < b.begin; });

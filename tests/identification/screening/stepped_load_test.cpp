@@ -81,6 +81,34 @@ TEST(ScreeningOfSteps, FindsAFrozenSensorBesideRowsThatHoldNoSample) {
   EXPECT_GE(right, 18);
 }
 
+TEST(ScreeningOfSteps, FindsShortFrozenStretchesOfASensorThatNeverRepeatsAValue) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    std::normal_distribution<double> noise(0, 0.01);
+    for (double& value : telemetry.record.y.reshaped()) value += noise(telemetry.random);
+    TickSet frozen;
+    for (const Index begin : {70, 150, 300, 420, 600}) {
+      const auto rows = static_cast<Index>(8 + telemetry.random() % 12);
+      telemetry.record.y.middleRows(begin, rows).setConstant(telemetry.record.y(begin));
+      frozen.push_back({begin, begin + rows});
+    }
+    right += telemetry.found(SensorFaultKind::stuck, 1) == frozen;
+  }
+  EXPECT_GE(right, 18);
+}
+
+TEST(ScreeningOfSteps, LeavesAnOutputWithoutNoiseThatTurns) {
+  for (Index rows = 400; rows < 1'400; rows += 50) {
+    Record record{1, Matrix(rows, 1), Matrix(rows, 1), {{0, rows, 0}}};
+    for (Index t = 0; t < rows; ++t) {
+      record.u(t) = quantised(std::sin(4.0 * double(t) / double(rows)), 1e-5);
+      record.y(t) = quantised(20 + std::sin(4.0 * double(t - 9) / double(rows)), 2e-4);
+    }
+    EXPECT_TRUE(sensor_faults(record, {true, true}).empty()) << rows;
+  }
+}
+
 TEST(ScreeningOfSteps, LeavesInputsAndOutputsThatCameToRest) {
   for (const double noise : {0.0, 0.02})
     for (unsigned seed = 1; seed <= 20; ++seed) {
