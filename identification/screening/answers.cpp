@@ -23,7 +23,9 @@ constexpr Index most_fitted = 4000, most_elsewhere = 1000, least_elsewhere = 50;
 constexpr double ridge = 1e-9;
 constexpr std::size_t most_draws = 1000, least_draws = 200, most_drawn = 64'000;
 constexpr double clearly = 1.5;
-constexpr double surely = 6;  // standard errors
+constexpr Index longest_lag = 60;       // rows of a dead time
+constexpr double expected_share = 0.5;  // of an excursion's height
+constexpr double surely = 6;            // standard errors
 
 using Errors = std::array<double, window_rows>;
 
@@ -40,7 +42,9 @@ void add(double factor, const Errors& errors, Errors& sum) {
 /// Predicts the rows of a channel by least squares of the rows without excursions.
 class Predictions {
  public:
-  Predictions(const Witnesses& witnesses, const std::vector<Excursion>& excursions);
+  /// Each channel stands for so many rows later as its lag says; that of `self` is 0.
+  Predictions(const Witnesses& witnesses, const std::vector<Excursion>& excursions,
+              const std::vector<Index>& lags);
 
   /// Whether there are rows to predict from and to compare with.
   bool are_possible() const {
@@ -52,6 +56,9 @@ class Predictions {
   bool know_excursions() const { return know_excursions_; }
   /// Errors around an excursion, without it or with it; absent next to an end of the segment.
   std::optional<Errors> errors_around(const Plateau& excursion, bool without);
+  /// How far the channel of the excursions is predicted to stand out as one does; 0 next to the
+  /// begin of the segment. Requires that this channel is the one that is predicted.
+  double expected_height(const Plateau& excursion);
   /// Errors in places that have no excursion nearby.
   std::vector<Errors> errors_elsewhere();
 
@@ -59,30 +66,35 @@ class Predictions {
   struct Term {
     const double* values;
     double mean, factor;
+    Index lag;
   };
 
   void sum_up(const std::vector<Excursion>& excursions);
   Errors errors_at(Index row);
   void describe(Index row, double* result) const;
+  /// Rows before the one that they predict.
+  Index rows_needed() const { return longest_lag_ + step_ * (predicting_rows - 1); }
   RowRange rows_around(Index row) const {
-    return {row - step_ * (rows_before + predicting_rows - 1), row + step_ * rows_behind + 1};
+    return {row - step_ * rows_before - rows_needed(), row + step_ * rows_behind + 1};
   }
 
   const Channel& channel_;  // of the excursions
   std::size_t self_;
   Vector bridged_;
   std::vector<Term> terms_;
-  Index step_ = 1, fitted_ = 0;
+  Index longest_lag_ = 0, step_ = 1, fitted_ = 0;
   std::vector<Index> elsewhere_;
   Matrix gram_;
   Vector weights_, described_;
   bool know_excursions_ = false;
 };
 
-Predictions::Predictions(const Witnesses& witnesses, const std::vector<Excursion>& excursions)
+Predictions::Predictions(const Witnesses& witnesses, const std::vector<Excursion>& excursions,
+                         const std::vector<Index>& lags)
     : channel_(witnesses.channels[witnesses.self]),
       self_(witnesses.self),
-      bridged_(channel_.values) {
+      bridged_(channel_.values),
+      longest_lag_(*std::max_element(lags.begin(), lags.end())) {
   std::vector<double> sizes;
   for (const Excursion& one : excursions) {
     sizes.push_back(double(one.plateau.size()));
@@ -92,7 +104,8 @@ Predictions::Predictions(const Witnesses& witnesses, const std::vector<Excursion
   for (const Channel& channel : witnesses.channels) {
     const Vector& values = terms_.size() == self_ ? bridged_ : channel.values;
     const double mean = values.mean(), square = (values.array() - mean).square().mean();
-    terms_.push_back({values.data(), mean, square > 0 ? 1 / std::sqrt(square) : 0});
+    terms_.push_back(
+        {values.data(), mean, square > 0 ? 1 / std::sqrt(square) : 0, lags[terms_.size()]});
   }
   weights_.resize(predicting_rows * std::ssize(terms_) + 1);
   described_.resize(weights_.size());
@@ -114,7 +127,9 @@ void Predictions::sum_up(const std::vector<Excursion>& excursions) {
   std::vector<Index> fitted;
   for (const Segment& segment : *channel_.segments) {
     for (Index row = segment.begin; row < segment.end; row += every)
-      if (is_clear(segment, {row - step_ * (predicting_rows - 1), row + 1})) fitted.push_back(row);
+      if (row - rows_needed() >= segment.begin &&
+          is_clear(segment, {row - step_ * (predicting_rows - 1), row + 1}))
+        fitted.push_back(row);
     for (Index row = segment.begin; row < segment.end; row += every_elsewhere)
       if (is_clear(segment, rows_around(row))) elsewhere_.push_back(row);
   }
@@ -153,6 +168,14 @@ std::optional<Errors> Predictions::errors_around(const Plateau& excursion, bool 
   return errors_at(excursion.begin);
 }
 
+double Predictions::expected_height(const Plateau& excursion) {
+  const Index row = excursion.begin;
+  if (row - rows_needed() < (*channel_.segments)[excursion.segment].begin) return 0;
+  terms_[self_].values = bridged_.data();
+  describe(row, described_.data());
+  return -weights_.dot(described_) / terms_[self_].factor;
+}
+
 std::vector<Errors> Predictions::errors_elsewhere() {
   terms_[self_].values = bridged_.data();
   std::vector<Errors> errors;
@@ -173,8 +196,30 @@ Errors Predictions::errors_at(Index row) {
 void Predictions::describe(Index row, double* result) const {
   for (const Term& one : terms_)
     for (Index back = 0; back < predicting_rows; ++back)
-      *result++ = (one.values[row - step_ * back] - one.mean) * one.factor;
+      *result++ = (one.values[row - one.lag - step_ * back] - one.mean) * one.factor;
   *result = 1;
+}
+
+/// After how many rows each channel is followed most by the one of the excursions, from row to row;
+/// at most `longest_lag`.
+std::vector<Index> lags_of(const Witnesses& witnesses, const Vector& bridged) {
+  std::vector<Index> lags;
+  const Index every = 1 + bridged.size() / most_fitted;
+  for (const Channel& channel : witnesses.channels) {
+    Index lag = 0;
+    double most = 0;
+    const bool is_self = lags.size() == witnesses.self;
+    for (Index behind = 0; !is_self && behind <= longest_lag; ++behind) {
+      double sum = 0;
+      for (const Segment& segment : *channel.segments)
+        for (Index row = segment.begin + longest_lag + 1; row < segment.end; row += every)
+          sum += (bridged(row) - bridged(row - 1)) *
+                 (channel.values(row - behind) - channel.values(row - behind - 1));
+      if (std::abs(sum) > most) most = std::abs(sum), lag = behind;
+    }
+    lags.push_back(lag);
+  }
+  return lags;
 }
 
 /// The largest square of sums that are weighted by these heights, of errors in places at chance.
@@ -194,7 +239,7 @@ double largest_sum(const std::vector<double>& heights, const std::vector<Errors>
 
 std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excursion> excursions) {
   if (excursions.empty()) return excursions;
-  Predictions predictions(witnesses, excursions);
+  Predictions predictions(witnesses, excursions, std::vector<Index>(witnesses.channels.size(), 0));
   if (!predictions.are_possible()) return excursions;
   for (std::size_t c = 0; c < witnesses.channels.size(); ++c) {
     if (c == witnesses.self || !(witnesses.channels[c].range() > 0)) continue;
@@ -222,6 +267,20 @@ std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excurs
       std::erase_if(excursions,
                     [&](const Excursion& one) { return witnesses.saw(c, one.plateau); });
   }
+  return excursions;
+}
+
+std::vector<Excursion> unexpected(const Witnesses& witnesses, std::vector<Excursion> excursions) {
+  if (excursions.empty()) return excursions;
+  Vector bridged = witnesses.channels[witnesses.self].values;
+  for (const Excursion& one : excursions) bridge(bridged, one.plateau);
+  Predictions predictions(witnesses, excursions, lags_of(witnesses, bridged));
+  if (!predictions.are_possible()) return excursions;
+  predictions.predict(witnesses.self);
+  std::erase_if(excursions, [&](const Excursion& one) {
+    const double share = predictions.expected_height(one.plateau) / one.height;
+    return share > expected_share && share < 1 / expected_share;
+  });
   return excursions;
 }
 

@@ -14,4 +14,10 @@ namespace reident::identification {
 /// heights, clearly more than in as many places elsewhere. The cost is linear in the rows.
 std::vector<Excursion> unanswered(const Witnesses& witnesses, std::vector<Excursion> excursions);
 
+/// Returns the excursions that the rows before do not lead to expect. The channel is predicted from
+/// its own two rows before and from each other channel at the lag at which it follows that, with
+/// the excursions taken out. An excursion is expected that stands out as far as predicted, by half
+/// to twice. The cost is linear in the rows.
+std::vector<Excursion> unexpected(const Witnesses& witnesses, std::vector<Excursion> excursions);
+
 }  // namespace reident::identification

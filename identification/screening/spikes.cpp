@@ -131,7 +131,7 @@ std::vector<Excursion> faults_among(const std::vector<Excursion>& spikes,
       return is_alone(spike) || std::abs(spike.height) <= 2 * tallest;
     });
   }
-  return unexplained;
+  return unexpected(witnesses, std::move(unexplained));
 }
 
 }  // namespace

@@ -227,6 +227,30 @@ TEST(Screening, FindsAnImpossibleValueAmongPulsesThatTheOutputAnswers) {
   EXPECT_LE(left_out, 5U);
 }
 
+TEST(Screening, LeavesPeaksOfAFastOutputWhoseInputStepsTwiceInAFewRows) {
+  int left_out = 0, found = 0;
+  for (const Index delay : {1, 9})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      Bus bus(seed, 2'000);
+      Matrix u(bus.rows, 1), y(bus.rows, 1);
+      double level = 1, state = 0;
+      for (Index t = 0; t < bus.rows; ++t) {
+        if (bus.random() % 10 == 0) level = bus.uniform();
+        u(t) = level;
+      }
+      for (Index t = 0; t < bus.rows; ++t) {
+        state = 0.4 * state + 0.6 * u(std::max<Index>(t - delay, 0));
+        y(t) = 5 + state + 0.003 * bus.noise(bus.random);
+      }
+      left_out += Bus::left_out_of(u, y, {true, true}).empty() ? 0 : 1;
+      y(1'000) += 3;
+      const Rows rows = Bus::left_out_of(u, y, {true, true});
+      found += std::ranges::count(rows, 1'000) > 0 ? 1 : 0;
+    }
+  EXPECT_LE(left_out, 2);
+  EXPECT_GE(found, 39);
+}
+
 TEST(Screening, FindsFewPulsesThatNoOutputAnswers) {
   for (const double pole : {0.7, 0.95}) {
     std::size_t found = 0, all = 0, honest = 0;
