@@ -16,6 +16,7 @@ constexpr std::size_t least_noisy_blocks = 3;
 constexpr double noise_factor = 4;
 constexpr double common_noise_factor = 2;
 constexpr double noise_deviation_share = 0.02;
+constexpr double steady = 0.5;  // the median of noise is more of the mean
 
 /// Blocks of rows that lie within one segment.
 struct Block {
@@ -84,39 +85,61 @@ std::vector<double> roughness(const Vector& values, const std::vector<Block>& bl
   return found;
 }
 
-/// The roughness of each block of each channel over the usual one; empty where the channel is not
-/// judged.
-std::vector<std::vector<double>> rough_ratios(const std::vector<Channel>& channels,
-                                              const std::vector<Block>& blocks) {
-  std::vector<std::vector<double>> ratios(channels.size());
-  if (blocks.empty()) return ratios;
+/// The roughness of each block of a channel over the usual one; none where it is not judged.
+struct Roughness {
+  std::vector<double> ratios;
+  double usual = 0;
+};
+
+std::vector<Roughness> rough_ratios(const std::vector<Channel>& channels,
+                                    const std::vector<Block>& blocks) {
+  std::vector<Roughness> found(channels.size());
+  if (blocks.empty()) return found;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Channel& channel = channels[c];
     if (!channel.is_analog || !(channel.range() > 0)) continue;
-    ratios[c] = roughness(channel.values, blocks);
+    auto& [ratios, usual] = found[c];
+    ratios = roughness(channel.values, blocks);
     const Vector& values = channel.values;
     const double deviation = std::sqrt((values.array() - values.mean()).square().mean());
-    const double usual =
-        std::max(quantile(ratios[c], 0.75), noise_deviation_share / noise_factor * deviation);
-    for (double& ratio : ratios[c]) ratio /= usual;
+    usual = std::max(quantile(ratios, 0.75), noise_deviation_share / noise_factor * deviation);
+    for (double& ratio : ratios) ratio /= usual;
   }
-  return ratios;
+  return found;
 }
 
-std::vector<NoisyRows> noisy_rows(const std::vector<std::vector<double>>& ratios, std::size_t self,
+/// Whether most rows of these blocks lie far less off the middle of their neighbours than the mean
+/// of them, as those of a channel do that steps between levels.
+bool steps_there(const Vector& values, const std::vector<Block>& blocks, const Roughness& rough,
+                 std::size_t begin, std::size_t end) {
+  std::vector<double> bends;
+  double mean = 0;
+  for (std::size_t block = begin; block < end; ++block) {
+    const Index first = blocks[block].begin;
+    for (Index row = first + 1; row + 1 < first + noise_block; ++row)
+      bends.push_back(std::abs(values(row) - (values(row - 1) + values(row + 1)) / 2));
+    mean += rough.ratios[block] * rough.usual / double(end - begin);
+  }
+  return quantile(bends, 0.5) < steady * mean;
+}
+
+std::vector<NoisyRows> noisy_rows(const std::vector<Channel>& channels,
+                                  const std::vector<Roughness>& rough, std::size_t self,
                                   const std::vector<Block>& blocks, const Record& record) {
   std::vector<NoisyRows> found;
   const auto is_noisy = [&](std::size_t block) {
-    if (!(ratios[self][block] > noise_factor)) return false;
-    for (std::size_t c = 0; c < ratios.size(); ++c)
-      if (c != self && !ratios[c].empty() && ratios[c][block] > common_noise_factor) return false;
+    if (!(rough[self].ratios[block] > noise_factor)) return false;
+    for (std::size_t c = 0; c < rough.size(); ++c)
+      if (c != self && !rough[c].ratios.empty() && rough[c].ratios[block] > common_noise_factor)
+        return false;
     return true;
   };
   for (std::size_t block = 0; block < blocks.size();) {
     std::size_t end = block;
     while (end < blocks.size() && blocks[end].segment == blocks[block].segment && is_noisy(end))
       ++end;
-    if (end - block >= least_noisy_blocks) {
+    if (end - block >= least_noisy_blocks &&
+        !steps_there(channels[self].values, blocks, rough[self], block, end)) {
       // The burst begins and ends within the blocks next to these.
       const Segment& segment = record.segments[blocks[block].segment];
       found.push_back({std::max(blocks[block].begin - noise_block, segment.begin),
@@ -133,10 +156,10 @@ std::vector<NoisyRows> noisy_rows(const std::vector<std::vector<double>>& ratios
 std::vector<std::vector<NoisyRows>> noise_bursts(const std::vector<Channel>& channels,
                                                  const Record& record) {
   const std::vector<Block> blocks = blocks_of(record);
-  const auto ratios = rough_ratios(channels, blocks);
+  const auto rough = rough_ratios(channels, blocks);
   std::vector<std::vector<NoisyRows>> found(channels.size());
   for (std::size_t c = 0; c < channels.size(); ++c)
-    if (!ratios[c].empty()) found[c] = noisy_rows(ratios, c, blocks, record);
+    if (!rough[c].ratios.empty()) found[c] = noisy_rows(channels, rough, c, blocks, record);
   return found;
 }
 

@@ -157,6 +157,27 @@ TEST(ScreeningOfSteps, FindsAnImpossibleInputWhereItSteps) {
   EXPECT_GE(right, 49);
 }
 
+TEST(ScreeningOfSteps, LeavesAnInputThatStepsMoreOftenForAWhile) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise;
+    Record record{1, Matrix(1'800, 1), Matrix(1'800, 1), {{0, 1'800, 0}}};
+    double input = 0, state = 0;
+    for (Index t = 0; t < 1'800; ++t) {
+      const bool is_often = t >= 400 && t < 680;
+      if (t % (is_often ? 5 : 40) == 0) input = double(random() % 1'000) / 200;
+      record.u(t) = input;
+      record.y(t) = 20 + state + 0.05 * noise(random);
+      state = 0.9 * state + 0.1 * input;
+    }
+    EXPECT_TRUE(sensor_faults(record, {true, true}).empty()) << seed;
+    for (Index t = 400; t < 680; ++t) record.u(t) += noise(random);
+    const auto faults = sensor_faults(record, {true, true});
+    EXPECT_TRUE(std::ranges::any_of(
+        faults, [](const auto& fault) { return fault.kind == SensorFaultKind::noise; }));
+  }
+}
+
 TEST(ScreeningOfSteps, LeavesANoisySensorThatIsSaturatedForLongOnce) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SteppedLoad telemetry(seed);
