@@ -18,15 +18,19 @@ constexpr double far = 10, absurd = 1e4;
 // How far outside of the others a number of nines lies that has another sign, of their range.
 constexpr double least_gap = 0.05;
 // A value of any kind that is scattered over the rows, such as 0: its plateaus, their share of all
-// plateaus and of all rows, and the share of them at which another channel may jump.
+// plateaus, that of long ones of all rows, and the share of them at which another channel may jump.
 constexpr Index least_scattered = 3;
-constexpr double most_scattered = 0.25, jumps_together = 0.5;
+constexpr double most_scattered = 0.35, most_long = 0.25, jumps_together = 0.5;
 // A value of excursions: how many have it, and how much more often it is repeated than others are.
 constexpr Index least_repeated = 5;
 constexpr double more_often = 5, exact_share = 0.9;
 // Plateaus of more than twice the usual length: their rows, and the deviations by which another
 // channel turns at them, as at what the equipment does.
 constexpr double longest_scattered = 30, turned_deviations = 4;
+// Rows within which another channel follows what begins and ends there, or is followed by it, and
+// the deviations of their correlation.
+constexpr Index most_rows_apart = 8;
+constexpr double related_deviations = 5;
 
 bool is_of_nines(double magnitude) {
   for (double nines = 99; nines < 1e16; nines = 10 * nines + 9)
@@ -145,6 +149,43 @@ bool another_turns(const Witnesses& witnesses, const std::vector<Plateau>& plate
   return false;
 }
 
+/// Whether another channel steps with the begins and ends of these plateaus, or some rows before or
+/// behind: a value that stands for none comes and goes whatever the equipment does.
+bool another_steps_with(const Witnesses& witnesses, const std::vector<Plateau>& plateaus) {
+  const std::vector<Channel>& channels = witnesses.channels;
+  const Channel& self = channels[witnesses.self];
+  struct End {
+    Index row;
+    double sign;
+  };
+  std::vector<End> ends;
+  for (const Plateau& one : plateaus) {
+    const Segment& segment = (*self.segments)[one.segment];
+    if (one.begin > segment.begin) ends.push_back({one.begin, 1});
+    if (one.end < segment.end) ends.push_back({one.end, -1});
+  }
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (c == witnesses.self || !(channels[c].range() > 0)) continue;
+    const Vector& values = channels[c].values;
+    // Where both hold the value, this one is bridged: the rest of such rows would be a bias.
+    const auto is_none = [&](Index row) {
+      return !witnesses.lost[c].empty() && values(row) == plateaus.front().value;
+    };
+    for (Index apart = -most_rows_apart; apart <= most_rows_apart; ++apart) {
+      double sum = 0, squares = 0;
+      for (const End& end : ends) {
+        const Index row = end.row + apart;
+        if (row < 1 || row >= values.size() || is_none(row - 1) || is_none(row)) continue;
+        const double step = values(row) - values(row - 1);
+        sum += end.sign * step;
+        squares += step * step;
+      }
+      if (sum * sum > related_deviations * related_deviations * squares) return true;
+    }
+  }
+  return false;
+}
+
 /// The ends of a channel that are further outside of the other values than these are apart.
 std::vector<double> far_ends(const Channel& channel) {
   std::vector<double> found;
@@ -231,11 +272,10 @@ bool stand_for_none(const std::vector<Channel>& channels, std::size_t self,
   }
   const double length = median_size(fills);
   const bool is_long = length > 2 * median_size(others);
-  if (is_long &&
-      (length > longest_scattered || double(rows) > most_scattered * double(values.size()) ||
-       another_turns(witnesses, fills)))
+  if (is_long && (length > longest_scattered || double(rows) > most_long * double(values.size()) ||
+                  another_turns(witnesses, fills)))
     return false;
-  if (another_jumps(witnesses, fills)) return false;
+  if (another_jumps(witnesses, fills) || another_steps_with(witnesses, fills)) return false;
   const auto count = excursions.size();
   return 2 * unanswered(witnesses, std::move(excursions)).size() >= count;
 }

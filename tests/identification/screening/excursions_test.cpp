@@ -138,6 +138,23 @@ TEST(Screening, FindsAValueThatIsRepeatedForSingleRowsWhereverItLies) {
       }
 }
 
+TEST(Screening, FindsAValueThatTwoInputsHaveInRowsOfTheirOwn) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Bus bus(seed);
+    bus.answer(0.92);
+    Rows lost;
+    for (Index t = 0; t < bus.rows; ++t) {
+      const bool has_load = bus.uniform() > 0.15, has_temperature = bus.uniform() > 0.15;
+      if (!has_load) bus.load(t) = -1;
+      if (!has_temperature) bus.temperature(t) = -1;
+      if (!has_load || !has_temperature) lost.push_back(t);
+    }
+    right += bus.left_out() == lost ? 1 : 0;
+  }
+  EXPECT_GE(right, 8);
+}
+
 TEST(Screening, LeavesARepeatedValueThatTheOutputAnswers) {
   for (const double pole : {0.5, 0.9, 0.97})
     for (const std::size_t count : {10U, 50U, 150U}) {

@@ -56,6 +56,40 @@ TEST(ScreeningOfSteps, FindsABusAtZeroInStretchesWhileTheLoadStepsAllTheTime) {
   EXPECT_GE(right, 19);
 }
 
+TEST(ScreeningOfSteps, FindsABusAtZeroInTwoOfFiveRows) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    std::bernoulli_distribution is_lost(0.4);
+    std::vector<TickRange> zeros;
+    for (Index row = 0; row < 700; ++row)
+      if (is_lost(telemetry.random)) {
+        telemetry.record.y(row) = 0;
+        zeros.push_back({row, row + 1});
+      }
+    right += telemetry.found(SensorFaultKind::fill, 1) == united(std::move(zeros));
+  }
+  EXPECT_GE(right, 19);
+}
+
+TEST(ScreeningOfSteps, LeavesALoadThatIsOffForMomentsWhichASlowBusAnswers) {
+  int left_out = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SteppedLoad telemetry(seed);
+    std::normal_distribution<double> noise;
+    double state = 0;
+    bool is_on = true;
+    for (Index t = 0; t < 700; ++t) {
+      is_on = telemetry.random() % (is_on ? 4 : 2) == 0 ? !is_on : is_on;
+      telemetry.record.u(t) = is_on ? 20 + 0.5 * noise(telemetry.random) : 0;
+      telemetry.record.y(t) = 28 + state + 0.3 * noise(telemetry.random);
+      state = 0.94 * state - 0.03 * telemetry.record.u(t);
+    }
+    left_out += telemetry.found(SensorFaultKind::fill, 0).empty() ? 0 : 1;
+  }
+  EXPECT_LE(left_out, 1);
+}
+
 TEST(ScreeningOfSteps, FindsASensorThatIsFrozenNearAnEndOfItsRange) {
   int right = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
