@@ -125,7 +125,16 @@ std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bo
   take_out(find(SensorFaultKind::stuck, [&](std::size_t c) {
     return stuck_plateaus(channels, c, static_cast<std::size_t>(whole.u.cols()));
   }));
-  add(find(SensorFaultKind::spike, [&](std::size_t c) { return spikes_of(channels, c); }));
+  std::vector<SensorFault> spikes =
+      find(SensorFaultKind::spike, [&](std::size_t c) { return spikes_of(channels, c); });
+  // What stands out beside a line has no neighbours of its own.
+  std::erase_if(spikes, [&](const SensorFault& spike) {
+    return std::any_of(faults.begin(), faults.end(), [&](const SensorFault& other) {
+      return other.channel == spike.channel &&
+             (other.ticks.end == spike.ticks.begin || other.ticks.begin == spike.ticks.end);
+    });
+  });
+  add(spikes);
   add(noise);
   std::stable_sort(faults.begin(), faults.end(), [](const SensorFault& a, const SensorFault& b) {
     return a.channel < b.channel;
