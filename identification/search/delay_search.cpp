@@ -12,6 +12,7 @@
 #include "identification/numerics/decompositions.hpp"
 #include "identification/search/delays.hpp"
 #include "identification/search/folds.hpp"
+#include "identification/search/mode_elimination.hpp"
 #include "identification/search/model_search.hpp"
 #include "identification/search/parsimony.hpp"
 #include "identification/simulation/free_run.hpp"
@@ -27,7 +28,7 @@ constexpr Index most_scanned = 1500, most_fitted = 4096, least_rows = 300;  // l
 constexpr int steps = 10, last_steps = 5;                                   // of a refinement
 constexpr double share_of_budget = 1.0 / 6;
 /// Twice the logarithm of the odds against a delay before the rows have been looked at.
-constexpr double odds_against = 6;
+constexpr double odds_against = 10;
 
 /// The channels, each less its mean and over its deviation.
 Record standardised(Record record) {
@@ -115,10 +116,10 @@ struct DelayedFit {
     return std::count_if(delays.begin(), delays.end(), [](int delay) { return delay > 0; });
   }
   Index states() const { return fit.model.order() + used(); }
-  /// Those of the model, where a delay counts as a state.
+  /// Those of the model, and the delays.
   Index parameters() const {
     const StateSpaceModel& model = fit.model;
-    return parameters_of(states(), model.inputs(), model.outputs(), direct, 1);
+    return parameters_of(model.order(), model.inputs(), model.outputs(), direct, 1) + used();
   }
 };
 
@@ -200,6 +201,33 @@ DelayedFit with_direct(const DelayedFit& fit, const Rows& rows) {
   return {fit.delays, refine_response(A, C, true, record, record.all(), steps), true};
 }
 
+/// Fits with one mode less, which is near 0, and delays that are longer by a row in its place.
+void add_delays_for_poles(std::vector<DelayedFit>& fits, const Rows& rows) {
+  constexpr double near_zero = 0.2;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const Dynamics dynamics{fits[i].fit.model.A, fits[i].fit.model.C};
+    const Index order = dynamics.A.rows();
+    if (order == 0 || eigenvalues(dynamics.A).cwiseAbs().minCoeff() > near_zero) continue;
+    const std::size_t inputs = fits[i].delays.size();
+    for (std::size_t longer = 0; longer < (inputs > 1 ? inputs + 1 : 1); ++longer) {
+      Delays delays = fits[i].delays;  // of one input, and of all
+      for (std::size_t j = 0; j < inputs; ++j) delays[j] += longer == j || longer == inputs ? 1 : 0;
+      const bool is_known = std::any_of(fits.begin(), fits.end(), [&](const DelayedFit& one) {
+        return one.delays == delays && one.fit.model.order() == order - 1;
+      });
+      if (is_known || *std::max_element(delays.begin(), delays.end()) > rows.most) continue;
+      const Record record = rows.with(delays);
+      const auto fewer = fewer_modes(dynamics, order == 1, record, record.all(), order - 1);
+      if (fewer.empty()) continue;
+      const auto& [A, C] = fewer.front().dynamics;
+      fits.push_back({delays,
+                      order == 1 ? fit_response(A, C, true, record, record.all(), Accuracy::fast)
+                                 : refine_response(A, C, false, record, record.all(), steps),
+                      order == 1});
+    }
+  }
+}
+
 /// What the fits leave of the outputs: log S, S the sum of squares of the errors, which are made
 /// white as those of the closest fit are.
 std::vector<double> log_squares(const std::vector<DelayedFit>& fits, const Rows& rows) {
@@ -249,6 +277,13 @@ Index affordable_scan(int most, Index m, Index p, double budget) {
   constexpr double passes = 2, time_constants = 11;
   const double of_row = passes * time_constants * double(m * (most + 1) * (m + p + 2));
   return std::min(most_scanned, static_cast<Index>(budget / of_row));
+}
+
+/// The delays of one state for each input, of the last rows that the budget lasts for.
+Delays first_look(const Record& record, Segment segment, int most, double budget) {
+  const Index count = affordable_scan(most, record.u.cols(), record.y.cols(), budget) + most;
+  segment.begin = std::max(segment.begin, segment.end - count);
+  return delays_of_one_state(record, segment, most);
 }
 
 /// Rows that the budget lasts for with descents of these orders.
@@ -305,7 +340,7 @@ double rows_as_one(const DelayedFit& fit, const Rows& rows) {
 
 }  // namespace
 
-std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
+std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange range,
                               const Identified* without, const IdentifyOptions& options) {
   const Index m = record.u.cols(), p = record.y.cols();
   const Delays none(static_cast<std::size_t>(m), 0);
@@ -314,12 +349,17 @@ std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
   const std::vector<Segment> segments =
       segments_within(record, {std::max(rows.begin, end - most_fitted), end});
   if (segments.empty()) return none;
-  Segment longest =
+  const Segment longest =
       *std::max_element(segments.begin(), segments.end(),
                         [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
-  most = std::min(most, static_cast<int>(longest.size() / 3));
-  longest.begin = std::max(longest.begin, longest.end - affordable_scan(most, m, p, budget) - most);
-  const Delays start = delays_of_one_state(record, longest, most);
+  const int limit = std::min(range.limit, static_cast<int>(longest.size() / 3));
+  int most = std::min(range.most, limit);
+  Delays start = first_look(record, longest, most, budget);
+  // The best of a range that lies at its end is not the best there is.
+  while (most < limit && std::ranges::find(start, most) != start.end()) {
+    most = std::min(2 * most, limit);
+    start = first_look(record, longest, most, budget);
+  }
   if (start == none) return none;
 
   const std::vector<int> orders = affordable_orders(m, p, options, budget);
@@ -337,6 +377,7 @@ std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
       fits.push_back(with_direct(descent.best(), fitted));
   }
   if (without) fits.push_back(fitted_again(*without, fitted));
+  add_delays_for_poles(fits, fitted);
   return simplest(fits, fitted).delays;
 }
 

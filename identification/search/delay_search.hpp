@@ -9,11 +9,18 @@
 
 namespace reident::identification {
 
-/// Returns delays in rows, one for each input and each at most `most` and a third of the longest
+/// How far delays are looked for, in rows: up to `most`, and on to `limit` as long as the rows show
+/// one at the end of what has been looked at.
+struct DelayRange {
+  int most;
+  int limit;
+};
+
+/// Returns delays in rows, one for each input, in the range and at most a third of the longest
 /// segment: those of the simplest model that nothing refutes, of the model `without` delays, where
 /// there is one, and of models of few states with delays and without. All are zero where it has
 /// none. Spends a sixth of the search budget for each of its two steps.
-std::vector<int> delays_shown(const Record& record, RowRange rows, int most,
+std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange range,
                               const Identified* without, const IdentifyOptions& options);
 
 /// Whether a model with delays stands beside one without, on the rows held out that both have: that

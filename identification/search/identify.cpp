@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "identification/search/delay_search.hpp"
 #include "identification/search/delays.hpp"
@@ -62,17 +63,47 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows, const std::
   return result;
 }
 
+/// Names the inputs that act after more samples than delays may have; empty where none does.
+std::string too_long_delays(const std::vector<int>& delays, int most,
+                            const IdentifyOptions& options) {
+  std::string found;
+  for (std::size_t i = 0; i < delays.size(); ++i)
+    if (delays[i] > most)
+      found += (found.empty() ? "" : "; ") +
+               channel_name("input", static_cast<Index>(i), options.input_names) +
+               " seems to act after " + std::to_string(delays[i]) +
+               " samples: delays were looked for up to " + std::to_string(most) +
+               ", as --max-delay says";
+  return found;
+}
+
+/// Adds a sentence to what an operator is told.
+void tell(IdentifyResult& result, const std::string& sentence) {
+  if (auto* found = std::get_if<Identified>(&result))
+    found->warnings.push_back(sentence);
+  else
+    std::get<Verdict>(result).reason += "; " + sentence;
+}
+
 /// Identifies a model without delays, and one with those that the rows show where rows held out
 /// agree.
 IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
                                           const IdentifyOptions& options, LagSums* kept) {
   constexpr Index usually_most = 60;
+  constexpr int any = std::numeric_limits<int>::max();
   IdentifyResult result = run_pipeline(record, rows, options, kept);
   auto* without = std::get_if<Identified>(&result);
   if (!without && std::get<Verdict>(result).code != VerdictCode::no_better_than_mean) return result;
   const int most =
       options.max_input_delay.value_or(static_cast<int>(std::min(usually_most, rows.size() / 8)));
-  const std::vector<int> delays = delays_shown(record, rows, most, without, options);
+  std::vector<int> delays =
+      delays_shown(record, rows, {without ? most : any, any}, without, options);
+  const std::string too_long =
+      options.max_input_delay ? too_long_delays(delays, most, options) : "";
+  if (!too_long.empty()) {
+    tell(result, too_long);
+    delays = delays_shown(record, rows, {most, most}, without, options);
+  }
   if (std::all_of(delays.begin(), delays.end(), [](int delay) { return delay == 0; }))
     return result;
   IdentifyResult with = identify_delayed(record, rows, delays, options);
@@ -82,6 +113,7 @@ IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
     found->search_work += without->search_work;
     if (!held_out_rows_agree(*found, *without, record, rows, options)) return result;
   }
+  if (!too_long.empty()) tell(with, too_long);
   return with;
 }
 

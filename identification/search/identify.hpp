@@ -40,8 +40,8 @@ struct IdentifyOptions {
   bool may_enforce_stability = true;
   /// Samples, one for each input; empty: none.
   std::vector<int> input_delays;
-  /// Delays are looked for, each at most so many samples; 0: they are not. Absent: at most 60, or
-  /// an eighth of the rows.
+  /// Delays are looked for, each at most so many samples; 0: they are not. Absent: as long ones as
+  /// the rows show.
   std::optional<int> max_input_delay = 0;
   /// The last so many inputs are those of operating regimes: they have an effect only where the
   /// model with them errs at least 5 % less on held-out rows. Fewer than the inputs.

@@ -68,9 +68,10 @@ void add_model_options(CLI::App& command, ModelRequest& request) {
   CLI::Option* delays = command.add_option(
       "--delay", request.delays, "INPUT=SAMPLES...: rows after which an input begins to act");
   command
-      .add_option("--max-delay", request.max_delay,
-                  "look for delays of the inputs of at most so many rows; 0: for none (60, or an "
-                  "eighth of the rows; none with --order or --delay)")
+      .add_option(
+          "--max-delay", request.max_delay,
+          "look for delays of the inputs of at most so many rows; 0: for none (as long as the "
+          "rows show; none with --order or --delay)")
       ->excludes(delays);
 }
 

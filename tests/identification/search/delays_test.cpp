@@ -1,5 +1,6 @@
 #include "identification/search/delays.hpp"
 
+#include <complex>
 #include <cstdlib>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 StateSpaceModel delayed_system(test::Noise& noise, const std::vector<int>& delays) {
   return with_delay_states(test::random_system(noise, 2, 2, 1, 0.8), delays);
@@ -114,6 +116,90 @@ TEST(Delays, OneThatNoPolesImitateIsFound) {
     right += found.recipe.order == 2 && found.input_delays == std::vector<int>{50};
   }
   EXPECT_EQ(right, 12);
+}
+
+/// Steps to random values, so many rows apart on average.
+Vector random_steps(test::Noise& noise, Index rows, double apart) {
+  Vector u(rows);
+  for (Index t = 0; t < rows; ++t)
+    u(t) = t == 0 || noise.uniform() < 1 / apart ? noise.uniform() : u(t - 1);
+  return u;
+}
+
+/// 0 or 1, which may change every so many rows.
+Vector binary_on_grid(test::Noise& noise, Index rows, Index grid) {
+  Vector u(rows);
+  for (Index t = 0; t < rows; ++t) u(t) = t % grid == 0 ? noise.uniform() < 0.5 : u(t - 1);
+  return u;
+}
+
+StateSpaceModel of_one_pole(double pole) {
+  return of_poles(Vector::Constant(1, pole), Vector::Constant(1, 1));
+}
+
+TEST(Delays, OneBeyondTheUsualRangeIsFound) {
+  // The range of 400 rows is 50, that of 1,300 rows is 60.
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Index rows = seed % 2 == 0 ? 400 : 1300;
+    const int delay = seed % 2 == 0 ? 58 : 75;
+    const Vector u = random_steps(noise, rows, 15);
+    const Identified found = identified(after_delay(of_one_pole(0.9), u, delay, 0.02, noise));
+    EXPECT_THAT(found.input_delays, ElementsAre(delay)) << seed;
+    EXPECT_EQ(found.recipe.order, 1) << seed;
+  }
+}
+
+TEST(Delays, OneBeyondTheRangeThatIsAskedForIsTold) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Vector u = random_steps(noise, 600, 15);
+    const Record record = after_delay(of_one_pole(0.9), u, 25, 0.02, noise);
+    IdentifyOptions options;
+    options.max_input_delay = 10;
+    const auto found = std::get<Identified>(identify(record, record.all(), options));
+    EXPECT_THAT(found.warnings, Contains(HasSubstr("input 1 seems to act after 25 samples")));
+    options.max_input_delay = 30;
+    const auto in_range = std::get<Identified>(identify(record, record.all(), options));
+    EXPECT_THAT(in_range.warnings, Not(Contains(HasSubstr("seems to act"))));
+    EXPECT_THAT(in_range.input_delays, ElementsAre(25));
+  }
+}
+
+TEST(Delays, OneOfOneRowIsNoPole) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    const Vector u = binary_on_grid(noise, 400, 6);
+    const Identified found =
+        identified(after_delay(of_one_pole(0.8 + 0.015 * double(seed)), u, 1, 0.03, noise));
+    EXPECT_THAT(found.input_delays, ElementsAre(1)) << seed;
+    EXPECT_EQ(found.recipe.order, 1) << seed;
+  }
+}
+
+TEST(Delays, OneBesideAnOscillationIsWhole) {
+  // Not a row less, with a pole near 0 in its place.
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test::Noise noise(seed);
+    StateSpaceModel plant{Matrix::Zero(3, 3),
+                          Vector(3),
+                          Eigen::RowVector3d(1, 1, 0),
+                          Matrix::Zero(1, 1),
+                          Matrix(3, 1),
+                          Vector::Zero(1),
+                          Vector::Zero(1),
+                          1};
+    const std::complex<double> pair = std::polar(0.85, 0.7);
+    plant.A(0, 0) = 0.95;
+    plant.A.bottomRightCorner(2, 2) << pair.real(), pair.imag(), -pair.imag(), pair.real();
+    plant.B << 0.05, 0.2 * noise.normal(), 0.2;
+    const int delay = 5 + static_cast<int>(seed);
+    const Vector u = binary_on_grid(noise, 1200, 8);
+    const Identified found = identified(after_delay(plant, u, delay, 0.02, noise));
+    right += found.input_delays == std::vector<int>{delay} && found.recipe.order == 3;
+  }
+  EXPECT_GE(right, 11);
 }
 
 TEST(Delays, ADutyCycleShowsOne) {
