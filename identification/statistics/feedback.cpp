@@ -16,18 +16,26 @@ namespace {
 constexpr double false_alarms = 5e-4;  // share of the records without feedback
 constexpr Index latest = 3;            // rows that most controllers look back at the most
 constexpr double least_share = 0.02;
+constexpr Index rows_for_each = 3;      // for each number that is known
+constexpr Index long_past = 4;          // times the usual one
 constexpr Index around_rhythm = 1;      // rows: a period need not be of whole ones
 constexpr double nothing_left = 1e-12;  // of an input's square: below it nothing is left to explain
 
-/// What is known before a row: so many rows of the inputs and of what a model makes of them, and
-/// the rows of each input around the one that lies its rhythm ago. There may be no rhythms.
+/// What is known before a row: so many rows of the inputs, so many of what a model makes of them,
+/// and the rows of each input around the one that lies its rhythm ago. There may be no rhythms.
 struct Past {
+  Index of_inputs;
   Index rows;
   std::vector<Index> rhythms{};
 
   Index longest() const {
-    return rhythms.empty() ? rows
-                           : *std::max_element(rhythms.begin(), rhythms.end()) + around_rhythm;
+    return rhythms.empty() ? of_inputs
+                           : std::max(of_inputs, *std::max_element(rhythms.begin(), rhythms.end()) +
+                                                     around_rhythm);
+  }
+  /// Numbers known, with m inputs and p outputs.
+  Index known(Index m, Index p) const {
+    return 1 + m * of_inputs + p * rows + std::ssize(rhythms) * (2 * around_rhythm + 1);
   }
 };
 
@@ -62,17 +70,18 @@ std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
                                                      const std::vector<Segment>& segments,
                                                      const Past& past, const Matrix& of_inputs) {
   const Index m = record.u.cols(), p = record.y.cols();
-  const Index of_rhythms = std::ssize(past.rhythms) * (2 * around_rhythm + 1);
-  const Index known = 1 + (m + p) * past.rows + of_rhythms, told = p * past.rows;
+  const Index known = past.known(m, p), told = p * past.rows;
   const Index count = for_each_row(segments, past, [](Index, Index) {});
-  if (m == 0 || count < 3 * (known + past.rows)) return std::nullopt;
+  if (m == 0 || count < rows_for_each * (known + past.rows)) return std::nullopt;
   Matrix columns(count, known + told + m);
   for_each_row(segments, past, [&](Index at, Index t) {
     auto row = columns.row(at);
     row(0) = 1;
     Index column = 1;
-    for (Index i = 1; i <= past.rows; ++i, column += m + p)
-      row.segment(column, m + p) << record.u.row(t - i), of_inputs.row(t - i);
+    for (Index i = 1; i <= past.of_inputs; ++i, column += m)
+      row.segment(column, m) = record.u.row(t - i);
+    for (Index i = 1; i <= past.rows; ++i, column += p)
+      row.segment(column, p) = of_inputs.row(t - i);
     for (std::size_t j = 0; j < past.rhythms.size(); ++j)
       for (Index i = -around_rhythm; i <= around_rhythm; ++i)
         row(column++) = record.u(t - past.rhythms[j] + i, static_cast<Index>(j));
@@ -117,16 +126,24 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
   assert(of_inputs.rows() == record.rows() && of_inputs.cols() == record.y.cols());
   const std::vector<Segment> segments = segments_within(record, rows);
   auto found =
-      feedback_beside(record, segments, {past}, of_inputs).value_or(std::vector<Feedback>());
+      feedback_beside(record, segments, {past, past}, of_inputs).value_or(std::vector<Feedback>());
   if (found.empty()) return found;
-  Past with_rhythms{past};
+  Past with_rhythms{past, past};
   std::vector<RowRange> ranges;
   for (const Segment& segment : segments_from(record, rows))
     ranges.push_back({segment.begin, segment.end});
-  for (Index i = 0; i < record.u.cols(); ++i)
+  const Index m = record.u.cols();
+  for (Index i = 0; i < m; ++i)
     with_rhythms.rhythms.push_back(rhythm_of(
         Series(record.u.col(i).segment(rows.begin, rows.size()), ranges), past + around_rhythm));
-  return feedback_beside(record, segments, with_rhythms, of_inputs).value_or(std::move(found));
+  Past longer = with_rhythms;
+  longer.of_inputs = long_past * past;
+  const Index count = for_each_row(segments, longer, [](Index, Index) {});
+  const Index beside = longer.known(m, record.y.cols()) - m * longer.of_inputs + past;
+  longer.of_inputs = std::clamp((count / rows_for_each - beside) / m, past, longer.of_inputs);
+  for (const Past& one : {longer, with_rhythms})
+    if (auto again = feedback_beside(record, segments, one, of_inputs)) return *again;
+  return found;
 }
 
 }  // namespace reident::identification
