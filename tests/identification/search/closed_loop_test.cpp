@@ -245,6 +245,77 @@ TEST(ClosedLoop, APeriodicInputIsNoFeedbackOfAModelThatMissesTheDeadTime) {
   EXPECT_EQ(invented, 0);
 }
 
+TEST(ClosedLoop, AnInputOnAGridIsNoFeedbackOfAModelThatMissesTheDeadTime) {
+  // When such an input may change next is known from rows further back than most controllers look.
+  int invented = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    test::Noise noise(seed);
+    const auto dead = static_cast<Index>(5 + 20 * noise.uniform());
+    Matrix u(1500, 1), y(1500, 1);
+    double slow = 0, fast = 0;
+    for (Index t = 0; t < 1500; ++t) {
+      u(t) = t % 8 == 0 ? noise.uniform() < 0.5 : u(t - 1);
+      y(t) = slow - fast + 0.01 * noise.normal();
+      const double late = t < dead ? 0 : u(t - dead);
+      slow = 0.95 * slow + 0.05 * late;
+      fast = 0.7 * fast + 0.2 * late;
+    }
+    const Record record = contiguous_record(1, u, y);
+    IdentifyOptions options;
+    options.max_input_delay = std::nullopt;
+    const IdentifyResult result = identify(record, record.all(), options);
+    const auto* found = std::get_if<Identified>(&result);
+    invented += !found || std::ranges::any_of(found->warnings, [](const std::string& warning) {
+      return warning.find("follows output") != std::string::npos;
+    });
+  }
+  EXPECT_LE(invented, 1);
+}
+
+/// A controller without a reference, and what disturbs the equipment beside the sensor's noise.
+struct Unmoved {
+  double pole, gain;
+  bool is_cascade = true;  // else with integral action and a measured load that it counters
+};
+
+/// The columns of u are the controller's output and, where there is one, the load.
+Record recorded(const Unmoved& loop, test::Noise& noise, Index rows) {
+  const bool has_load = !loop.is_cascade;
+  Matrix u(rows, has_load ? 2 : 1), y(rows, 1);
+  const double proportional = 2 / loop.gain, integral = proportional * (1 - loop.pole);
+  double x = 0, disturbance = 0, load = 0, command = 0, set_point = 0, sum = 0;
+  for (Index t = 0; t < rows; ++t) {
+    const double error = t > 0 ? -y(t - 1) : 0;
+    disturbance = 0.95 * disturbance + 0.16 * noise.normal();
+    load = 0.95 * load + 0.31 * noise.normal();
+    y(t) = x + disturbance + 0.05 * noise.normal();
+    if (has_load) {
+      sum += integral * error;
+      command = proportional * error + sum - load;
+      u(t, 1) = load;
+    } else {
+      if (t % 4 == 0) set_point = 1.5 * error;
+      command = 0.5 * command + 0.25 * proportional * set_point;
+    }
+    u(t, 0) = command;
+    x = loop.pole * x + (1 - loop.pole) * loop.gain * (command + (has_load ? load : 0));
+  }
+  return contiguous_record(1, u, y);
+}
+
+TEST(ClosedLoop, AControllerWithoutAReferenceGivesNoModel) {
+  for (const bool is_cascade : {true, false}) {
+    int given = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      test::Noise noise(seed);
+      const double pole = 0.85 + 0.1 * noise.uniform(), gain = 1 + 2 * noise.uniform();
+      const Record record = recorded(Unmoved{pole, gain, is_cascade}, noise, 700);
+      given += std::holds_alternative<Identified>(identify(record, record.all(), {}));
+    }
+    EXPECT_LE(given, 1) << is_cascade;
+  }
+}
+
 TEST(ClosedLoop, FeedbackIsFoundBesideAPeriodicReference) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
