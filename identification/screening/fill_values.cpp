@@ -26,6 +26,7 @@ constexpr Index least_repeated = 5;
 constexpr double more_often = 5, exact_share = 0.9;
 // Plateaus of more than twice the usual length: their rows, and the deviations by which another
 // channel turns at them, as at what the equipment does.
+constexpr double longest_off_command = 2;
 constexpr double longest_scattered = 30, turned_deviations = 4;
 // Rows within which another channel follows what begins and ends there, or is followed by it, and
 // the deviations of their correlation.
@@ -186,7 +187,8 @@ bool another_steps_with(const Witnesses& witnesses, const std::vector<Plateau>& 
   return false;
 }
 
-/// The ends of a channel that are further outside of the other values than these are apart.
+/// The ends of a channel that are further outside of the other values than these are apart; or as
+/// far, of a channel that is not analog.
 std::vector<double> far_ends(const Channel& channel) {
   std::vector<double> found;
   const Ends ends = ends_of(span_of(channel.values), -infinity, infinity);
@@ -194,8 +196,9 @@ std::vector<double> far_ends(const Channel& channel) {
     const double value = is_low ? ends.low : ends.high;
     const double low = is_low ? ends.next_to_low : ends.low;
     const double high = is_low ? ends.high : ends.next_to_high;
+    const double gap = std::max(low - value, value - high);
     if ((is_low ? ends.at_low : ends.at_high) >= least_scattered && high > low &&
-        std::max(low - value, value - high) > high - low)
+        (channel.is_analog ? gap > high - low : gap >= high - low))
       found.push_back(value);
   }
   return found;
@@ -259,8 +262,13 @@ std::vector<double> repeated_excursions(const Channel& channel) {
 /// channel confirms them.
 bool stand_for_none(const std::vector<Channel>& channels, std::size_t self,
                     const std::vector<Plateau>& fills, const std::vector<Plateau>& others) {
+  if (std::ssize(fills) < least_scattered) return false;
+  const double length = median_size(fills), usual = median_size(others);
   const double share = double(fills.size()) / double(fills.size() + others.size());
-  if (std::ssize(fills) < least_scattered || share > most_scattered) return false;
+  // A command has few plateaus. One of its levels is not given for a row or two again and again.
+  if (channels[self].is_analog ? share > most_scattered
+                               : length > std::min(longest_off_command, usual / 2))
+    return false;
   const Witnesses witnesses = witnesses_of(channels, self, fills);
   const Vector& values = channels[self].values;
   Index rows = 0;
@@ -270,8 +278,7 @@ bool stand_for_none(const std::vector<Channel>& channels, std::size_t self,
     if (fill.begin > (*channels[self].segments)[fill.segment].begin)
       excursions.push_back({fill, fill.value - values(fill.begin - 1)});
   }
-  const double length = median_size(fills);
-  const bool is_long = length > 2 * median_size(others);
+  const bool is_long = length > 2 * usual;
   if (is_long && (length > longest_scattered || double(rows) > most_long * double(values.size()) ||
                   another_turns(witnesses, fills)))
     return false;

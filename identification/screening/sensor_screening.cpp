@@ -101,7 +101,7 @@ std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bo
   const auto find = [&](SensorFaultKind kind, const auto& rows_of) {
     std::vector<SensorFault> found;
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      if (!channels[c].is_analog) continue;
+      if (!channels[c].is_analog && kind != SensorFaultKind::fill) continue;
       for (const auto& rows : rows_of(c))
         found.push_back(
             {kind, static_cast<Index>(c), ticks_of(record(), rows.segment, rows.begin, rows.end)});

@@ -72,6 +72,33 @@ TEST(ScreeningOfSteps, FindsABusAtZeroInTwoOfFiveRows) {
   EXPECT_GE(right, 19);
 }
 
+TEST(ScreeningOfSteps, FindsAThirdValueInSingleRowsOfACommandOfTwoLevels) {
+  int found = 0, left_out = 0;
+  for (const double value : {-1.0, 2.0})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      SteppedLoad telemetry(seed);
+      Record& record = telemetry.record;
+      std::normal_distribution<double> noise;
+      double heater = 0, cold = 0, warm = 0;
+      Record answering = record;
+      for (Index t = 0; t < 700; ++t) {
+        if (telemetry.random() % 20 == 0) heater = 1 - heater;
+        record.u(t) = answering.u(t) = telemetry.random() % 20 == 0 ? value : heater;
+        record.y(t) = 20 + cold + 0.02 * noise(telemetry.random);
+        answering.y(t) = 20 + warm + 0.02 * noise(telemetry.random);
+        cold = 0.9 * cold + 0.1 * heater;
+        warm = 0.9 * warm + 0.1 * answering.u(t);
+      }
+      const auto is_found = [](const Record& in) {
+        return !sensor_faults(in, {false, true}).empty();
+      };
+      found += is_found(record) ? 1 : 0;
+      left_out += is_found(answering) ? 1 : 0;
+    }
+  EXPECT_GE(found, 38);
+  EXPECT_LE(left_out, 2);
+}
+
 TEST(ScreeningOfSteps, LeavesALoadThatIsOffForMomentsWhichASlowBusAnswers) {
   int left_out = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
