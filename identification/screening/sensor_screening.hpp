@@ -23,9 +23,9 @@ struct SensorFault {
   TickRange ticks;
 };
 
-/// Judges the channels that are `analog` (m + p entries, inputs first). One that counts or switches
-/// repeats and jumps by nature: it is judged for fill values alone. Requires finite rows. Returns the faults by channel, then kind,
-/// then time. The cost is linear in the rows.
+/// Judges the channels that are `analog` (m + p entries, inputs first). Others repeat and jump by
+/// nature: of them only fill values are found. Requires finite rows. Returns the faults by channel,
+/// then kind, then time. The cost is linear in the rows.
 std::vector<SensorFault> sensor_faults(const Record& record, const std::vector<bool>& analog);
 
 }  // namespace reident::identification
