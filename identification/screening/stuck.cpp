@@ -191,9 +191,10 @@ LongPlateaus unusually_long(const Channel& channel, const std::vector<Plateau>& 
 std::vector<Plateau> stuck_plateaus(const std::vector<Channel>& channels, std::size_t self,
                                     std::size_t inputs) {
   const Channel& channel = channels[self];
-  const Index most_rows = Index(most_stuck) * channel.longest_repeat;
-  if (channel.longest_repeat < least_stuck_rows &&
-      double(channel.steps) < restless_share * double(channel.values.size() - most_rows))
+  const Index rows = channel.longest_repeat;
+  const double rest = double(channel.values.size() - Index(most_stuck) * rows);
+  if (rows < least_stuck_rows &&
+      (double(rows) < longer || double(channel.steps) < restless_share * rest))
     return {};
   const std::vector<Plateau> plateaus = channel.plateaus();
   const auto [longest, rests_nowhere_else] = unusually_long(channel, plateaus);
