@@ -142,7 +142,14 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
   const Index beside = longer.known(m, record.y.cols()) - m * longer.of_inputs + past;
   longer.of_inputs = std::clamp((count / rows_for_each - beside) / m, past, longer.of_inputs);
   for (const Past& one : {longer, with_rhythms})
-    if (auto again = feedback_beside(record, segments, one, of_inputs)) return *again;
+    if (auto again = feedback_beside(record, segments, one, of_inputs)) {
+      // What so much is known beside of few steps leaves little to explain.
+      for (Feedback& left : *again)
+        for (const Feedback& before : found)
+          if (before.input == left.input && before.output == left.output)
+            left.share = std::min(left.share, before.share);
+      return *again;
+    }
   return found;
 }
 
