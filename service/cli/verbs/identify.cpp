@@ -86,6 +86,7 @@ double resolution_of(Vector values) {
 /// far above 0.
 void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome) {
   constexpr double as_before = 1.2;  // times the error on the identification rows
+  constexpr double as_noise = 3;     // times what the output changes by from row to row
   constexpr double much_less = 0.5;  // of the fit on the identification rows
   const auto rows_of = [&](Index q, RowRange range) {
     return data.record.y.col(q).segment(range.begin, range.size());
@@ -102,15 +103,20 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
     const double fit = outcome.diagnostics.free_run.fit_percent(q);
     const double fit_before = outcome.identify.fit_percent(q);
     const double movement = std::sqrt((rows.array() - rows.mean()).square().mean());
+    const double change =
+        std::sqrt((rows.tail(rows.size() - 1) - rows.head(rows.size() - 1)).squaredNorm() / 2 /
+                  static_cast<double>(rows.size()));
     const double resolution = resolution_of(data.record.y.col(q));
     const double rounding = 1e-9 * std::abs(rows(0));
     if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
       outcome.warnings.push_back(fmt::format(
-          "the validation rows of {} are constant: they say nothing about the fit. The error there "
-          "is {:.3g}, and {} is resolved to {:.3g}; choose rows in which it moves with --validate",
-          output, error, output, resolution));
+          "the validation rows of {} are constant: they say nothing about the fit. {}{} is "
+          "resolved "
+          "to {:.3g}; choose rows in which it moves with --validate",
+          output, std::isfinite(error) ? fmt::format("The error there is {:.3g}, and ", error) : "",
+          output, resolution));
     else if (fit_before > 0 && fit < much_less * fit_before &&
-             std::max(error, movement) <= as_before * before)
+             std::max(error, movement) <= as_before * before && movement <= as_noise * change)
       outcome.warnings.push_back(fmt::format(
           "on the validation rows {} moves by no more than the model errs everywhere: they say "
           "nothing about the fit. The error there is {:.3g}, and on the identification rows "

@@ -309,6 +309,30 @@ TEST_F(Identify, SaysThatValidationRowsInWhichNothingMovesSayNothing) {
   EXPECT_THAT(reident(command(resting)).out, HasSubstr("say nothing about the fit"));
 }
 
+TEST_F(Identify, SaysOfAnOutputThatIsZeroInTheValidationRowsNoErrorThatIsNoNumber) {
+  Plant data = plant(900);
+  data.u.bottomRows(300).setConstant(5);
+  data.y.bottomRows(300).setZero();
+  write("plant.csv", csv_of(data));
+  const test::Ran ran = reident(
+      command({"--order", "2", "--no-screening", "--identify", "0:550", "--validate", "650:900"}));
+  EXPECT_THAT(ran.out, HasSubstr("say nothing about the fit"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("nan")));
+}
+
+TEST_F(Identify, SaysOfAModelThatMissesWhatMovesAnOutputThatItIsBad) {
+  Plant data = plant(900);
+  for (Eigen::Index row = 0; row < 900; ++row)
+    data.y(row, 0) = 28 +
+                     (row < 600 ? 10 : 6) * std::sin((0.02 + 4e-5 * static_cast<double>(row)) *
+                                                     static_cast<double>(row)) +
+                     (row < 600 ? 1.5 * (data.u(row, 0) - 5) : 0);
+  write("plant.csv", csv_of(data));
+  const test::Ran ran = reident(command({"--order", "2", "--no-screening"}));
+  EXPECT_THAT(ran.out, HasSubstr("worse than the mean of y1: do not use it"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("say nothing about the fit")));
+}
+
 TEST_F(Identify, ReportsInWordsWithoutJson) {
   write("plant.csv", csv_of(plant(600)));
   const test::Ran ran = reident(command({"--order", "2"}));
