@@ -25,7 +25,7 @@ constexpr double certain_spreads = 2;
 /// where it explains all, there is none.
 constexpr double dominant_share = 0.5, whole_share = 0.98;
 constexpr double equal_responses = 0.1;  // relative difference
-constexpr double far_more = 2;           // of the responses to a step
+constexpr double far_more = 3;           // of the responses to a step
 constexpr double least_growth = 10;      // logarithm, over the rows: an integrator drifts by less
 
 /// The gain from an input to an output at rest; 0 where it has no meaning.
@@ -179,19 +179,15 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
                                        : "a step begins with the other sign, and the rows do not "
                                          "show where it ends") +
                          "; take what drives the loop as the input"};
+    if (one.share > dominant_share && !has_sign(1))
+      return Verdict{VerdictCode::closed_loop,
+                     "closed loop: " + who + " and hardly moves otherwise; " + would_be +
+                         ", and nothing shows that this is not the controller's; choose a window "
+                         "in which something else drives the loop, and take that as the input"};
     const double unit = channels.y_scale(output) / channels.u_scale(input);
     const Index after = looked_at.size() / 10;
     const double own = step_response(identified.model, output, input, after);
     const double of_loop = unit * step_response(loops.front().model, one.output, one.input, after);
-    const bool is_like = own * of_loop > 0 && std::abs(of_loop) < far_more * std::abs(own) &&
-                         std::abs(own) < far_more * std::abs(of_loop);
-    if (!has_sign(1) && (one.share > dominant_share || !is_like))
-      return Verdict{VerdictCode::closed_loop,
-                     "closed loop: " + who +
-                         (one.share > dominant_share ? " and hardly moves otherwise" : "") + "; " +
-                         would_be +
-                         ", and nothing shows that this is not the controller's; choose a window "
-                         "in which something else drives the loop, and take that as the input"};
     const auto has_far_more = [&](const LoopModel& loop) {
       const double response = unit * step_response(loop.model, one.output, one.input, after);
       return response * of_loop > 0 && std::abs(response) > far_more * std::abs(own);

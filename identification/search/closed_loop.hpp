@@ -15,8 +15,8 @@ namespace reident::identification {
 /// Judges the model where inputs follow outputs in the rows: against one identified for closed
 /// loops, on all rows and on each half of them. Returns the verdict `closed_loop` where that one is
 /// certainly unstable and predicts more than the model simulates, certainly has the other sign of a
-/// gain, or does not certainly have the same sign where an output all but makes the input or the
-/// responses to a step differ; else adds a warning.
+/// gain, or does not certainly have the same sign where an output all but makes the input; else
+/// adds a warning.
 std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified& identified,
                                            std::vector<std::string>& warnings);
 

@@ -272,50 +272,6 @@ TEST(ClosedLoop, AnInputOnAGridIsNoFeedbackOfAModelThatMissesTheDeadTime) {
   EXPECT_LE(invented, 1);
 }
 
-/// A controller without a reference, and what disturbs the equipment beside the sensor's noise.
-struct Unmoved {
-  double pole, gain;
-  bool is_cascade = true;  // else with integral action and a measured load that it counters
-};
-
-/// The columns of u are the controller's output and, where there is one, the load.
-Record recorded(const Unmoved& loop, test::Noise& noise, Index rows) {
-  const bool has_load = !loop.is_cascade;
-  Matrix u(rows, has_load ? 2 : 1), y(rows, 1);
-  const double proportional = 2 / loop.gain, integral = proportional * (1 - loop.pole);
-  double x = 0, disturbance = 0, load = 0, command = 0, set_point = 0, sum = 0;
-  for (Index t = 0; t < rows; ++t) {
-    const double error = t > 0 ? -y(t - 1) : 0;
-    disturbance = 0.95 * disturbance + 0.16 * noise.normal();
-    load = 0.95 * load + 0.31 * noise.normal();
-    y(t) = x + disturbance + 0.05 * noise.normal();
-    if (has_load) {
-      sum += integral * error;
-      command = proportional * error + sum - load;
-      u(t, 1) = load;
-    } else {
-      if (t % 4 == 0) set_point = 1.5 * error;
-      command = 0.5 * command + 0.25 * proportional * set_point;
-    }
-    u(t, 0) = command;
-    x = loop.pole * x + (1 - loop.pole) * loop.gain * (command + (has_load ? load : 0));
-  }
-  return contiguous_record(1, u, y);
-}
-
-TEST(ClosedLoop, AControllerWithoutAReferenceGivesNoModel) {
-  for (const bool is_cascade : {true, false}) {
-    int given = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      test::Noise noise(seed);
-      const double pole = 0.85 + 0.1 * noise.uniform(), gain = 1 + 2 * noise.uniform();
-      const Record record = recorded(Unmoved{pole, gain, is_cascade}, noise, 700);
-      given += std::holds_alternative<Identified>(identify(record, record.all(), {}));
-    }
-    EXPECT_LE(given, 1) << is_cascade;
-  }
-}
-
 TEST(ClosedLoop, FeedbackIsFoundBesideAPeriodicReference) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
