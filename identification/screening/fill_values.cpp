@@ -24,9 +24,9 @@ constexpr double most_scattered = 0.35, most_long = 0.25, jumps_together = 0.5;
 // A value of excursions: how many have it, and how much more often it is repeated than others are.
 constexpr Index least_repeated = 5;
 constexpr double more_often = 5, exact_share = 0.9;
+constexpr double longest_off_command = 2;  // rows of a plateau of a channel that is not analog
 // Plateaus of more than twice the usual length: their rows, and the deviations by which another
 // channel turns at them, as at what the equipment does.
-constexpr double longest_off_command = 2;
 constexpr double longest_scattered = 30, turned_deviations = 4;
 // Rows within which another channel follows what begins and ends there, or is followed by it, and
 // the deviations of their correlation.

@@ -38,7 +38,7 @@ struct Recipe {
   /// The order of the refined model of which so many modes are left, without those that the rows
   /// miss least; 0: none is taken out.
   int eliminated_from = 0;
-  /// That of the model which the subspace gives.
+  /// Returns the order of the model that the subspace gives.
   int subspace_order() const { return eliminated_from > 0 ? eliminated_from : order; }
 };
 

@@ -143,7 +143,7 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
   longer.of_inputs = std::clamp((count / rows_for_each - beside) / m, past, longer.of_inputs);
   for (const Past& one : {longer, with_rhythms})
     if (auto again = feedback_beside(record, segments, one, of_inputs)) {
-      // What so much is known beside of few steps leaves little to explain.
+      // With so much known, little of an input of few steps is left, and all of that is explained.
       for (Feedback& left : *again)
         for (const Feedback& before : found)
           if (before.input == left.input && before.output == left.output)

@@ -279,12 +279,10 @@ bool comes_on_change(const Samples& samples, std::int64_t period_ns) {
   return (least >= 10 && 8 * none < least) || 16 * up_to(median / 4) < std::ssize(steps);
 }
 
-/// Ends the hold of each sample of a column that speaks at every tick, whatever it says, where the
-/// next one is due and does not come. Says how often it did not.
+/// Ends the hold of each sample of a column that speaks at every tick, unless it comes on change,
+/// where the next one is due and does not come. Says of both how often it did not.
 void mark_what_did_not_come(const IdentifyTable& table, std::vector<Samples>& samples,
                             std::int64_t period_ns, std::vector<std::string>& warnings) {
-  const std::string serve = fmt::format("--hold {} lets the value before serve",
-                                        duration_text(sample_hold_periods * period_ns));
   for (std::size_t c = 0; c < samples.size(); ++c) {
     const auto steps = steps_of(samples[c].time_ns, samples[c].part);
     if (quantile(steps, 0.5) > period_ns) continue;
@@ -306,7 +304,8 @@ void mark_what_did_not_come(const IdentifyTable& table, std::vector<Samples>& sa
           late,
           on_change ? fmt::format("the value before serves on; --hold {} leaves such ticks out",
                                   duration_text(period_ns))
-                    : "such ticks are left out; " + serve));
+                    : fmt::format("such ticks are left out; --hold {} lets the value before serve",
+                                  duration_text(sample_hold_periods * period_ns))));
     samples[c] = std::move(marked);
   }
 }

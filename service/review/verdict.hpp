@@ -15,7 +15,8 @@ struct Verdict {
 };
 
 /// Returns what the record of a version that waits says now; else its last decision, with the
-/// conditions as they were found then.
+/// conditions as they were found then. Of a champion it also says what waits to replace it, and
+/// whether it has failed.
 Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& story);
 
 }  // namespace reident

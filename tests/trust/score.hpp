@@ -11,7 +11,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,8 +56,8 @@ struct ChangeScore {
   storage::Time begin = 0;
   bool mattered = false;    // the champion of then became worse than the factor allows
   std::int64_t orbits = 0;  // of honest telemetry, the longest range with a champion that was
-  /// The same if the best version of those that existed had run at each orbit: with less, no rule
-  /// that chooses among these versions does it.
+  /// So many it would be with the best version of those that existed at each orbit: no rule that
+  /// chooses among these versions has fewer.
   std::int64_t hindsight_orbits = 0;
   double worst_ratio = 0;  // of the champion's error to the oracle's
   ErrorCurve oracle;
@@ -95,7 +94,8 @@ struct VersionCurve {
   ErrorCurve error;
 };
 
-/// Of all versions with a model; `versions` has the time at which each was made, and ascends.
+/// Returns the curves of all versions with a model; `versions` has the times at which they were
+/// made.
 std::vector<VersionCurve> version_curves(const Truth& truth, const std::vector<Tenure>& versions);
 
 /// Geometric mean, over the orbits with a champion, of the champion's error over the orbit and the
