@@ -101,11 +101,19 @@ ErrorCurve Truth::empty_curve() const {
   return {extent_.begin, block_, equipment_.outputs.size()};
 }
 
+const identification::Record& Truth::record_for(const WindowRequest& request) const {
+  if (!record_ || record_->first != request)
+    record_.emplace(request, load(truth_, request, extent_).record);
+  return record_->second;
+}
+
 ErrorCurve Truth::free_run(const EquipmentModel& model, storage::TimeRange range) const {
   const WindowRequest request = request_of(model);
-  const identification::Record record = load(truth_, request, range).record;
+  const identification::Record& record = record_for(request);
+  const identification::TickRange ticks = ticks_of(range, request.period);
   ErrorCurve curve = empty_curve();
-  for (const identification::Segment& segment : record.segments) {
+  for (const identification::Segment& segment : segments_within(
+           record, {first_row_at(record, ticks.begin), first_row_at(record, ticks.end)})) {
     const identification::RowRange rows{segment.begin, segment.end};
     const identification::Vector x0 =
         estimate_initial_state(model.dynamics, record, {segment}, identification::state_rows);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -56,7 +57,7 @@ struct Extremes {
   double high = 0;
 };
 
-/// The truth of one life as one equipment's models see it.
+/// The truth of one life as one equipment's models see it. For one thread at a time.
 class Truth {
  public:
   /// `truth` holds what perfect sensors would have sent when the real ones did; `block` is the
@@ -64,7 +65,8 @@ class Truth {
   Truth(const KnownSeries& truth, const KnownSeries& simulated, const SpacecraftConfig& spacecraft,
         const EquipmentConfig& equipment, storage::TimeRange extent, Duration block);
 
-  /// The model started on the truth's first rows of `range` and run freely through it.
+  /// The model started on the truth's first rows of `range`, a part of the extent, and run freely
+  /// through it.
   ErrorCurve free_run(const EquipmentModel& model, storage::TimeRange range) const;
   /// The hand-written simulator over `range`; where it has no such output, the mean of the truth.
   ErrorCurve baseline(storage::TimeRange range) const;
@@ -81,6 +83,7 @@ class Truth {
 
  private:
   WindowRequest outputs_alone() const;
+  const identification::Record& record_for(const WindowRequest& request) const;
 
   const KnownSeries& truth_;
   const KnownSeries& simulated_;
@@ -88,6 +91,8 @@ class Truth {
   const EquipmentConfig& equipment_;
   storage::TimeRange extent_;
   Duration block_;
+  /// All of the truth as the models of one request see it, which nearly all of them have.
+  mutable std::optional<std::pair<WindowRequest, identification::Record>> record_;
 };
 
 /// Identified as the service does, but from telemetry without a fault, its corrections left out;
