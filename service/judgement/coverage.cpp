@@ -54,8 +54,9 @@ std::pair<double, double> served_errors(const League& league,
     if (bounded && counts(block) && block.range.begin >= member.window.begin &&
         block.range.end <= member.window.end)
       usual.add(block, block.output_square);
+  std::vector<double> square;
   const auto add = [&](Sums& sums, const Member& of, const Block& block, double weight) {
-    std::vector<double> square = find(of.scores, block.range.begin)->square;
+    square = find(of.scores, block.range.begin)->square;
     for (std::size_t q = 0; usual.rows > 0 && q < square.size(); ++q)
       square[q] = std::min(square[q], usual.error(std::ptrdiff_t(q)) / usual.rows);
     sums.add(block, square, weight);

@@ -26,7 +26,7 @@ void extend(Comparison& comparison, const League& league, const Member& one, con
                  [&](std::size_t i, const Block& block, const BlockScore& of_one) {
                    const BlockScore* of_other = find(other, block.range.begin);
                    if (of_other && block.range.begin < until)
-                     comparison.add(i, block, of_one, *of_other);
+                     comparison.add(i, block, of_one, *of_other, of_other->square);
                  });
 }
 
@@ -60,7 +60,7 @@ void Judge::take_in(const League& league) {
   for_each_score(league, *league.champion, since_, counted,
                  [&](std::size_t i, const Block& block, const BlockScore& score) {
                    compared_.own.add(block, score.square);
-                   compared_.with_simulator.add(i, block, score, block.baseline_square);
+                   compared_.with_simulator.add(i, block, score, score, block.baseline_square);
                  });
   const auto is_member = [&](std::int64_t version) {
     return version == champion_ ||
@@ -125,8 +125,10 @@ std::vector<Finding> Judge::findings(const League& league) {
     return findings;
   }
   take_in(league);
+  std::map<std::size_t, SensorPast> pasts;
   const Standard standard{
-      league, *limits_, since_, changed(league), usual_dependence(league), regimes_.numbers()};
+      league, *limits_, since_, changed(league), usual_dependence(league), regimes_.numbers(),
+      pasts};
   for (const Member& member : league.challengers)
     findings.push_back(
         judge_against_champion(standard, member, comparison(league, member, *league.champion)));
@@ -208,13 +210,14 @@ std::optional<Reason> Judge::failure(const League& league) {
   if (const Sums& own = compared_.own; !(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;
     Comparison with_mean;
+    std::vector<double> square;
     for_each_score(league, *league.champion, since_, 0,
                    [&](std::size_t i, const Block& block, const BlockScore& score) {
-                     std::vector<double> square = block.output_square;
+                     square = block.output_square;
                      for (std::size_t q = 0; q < square.size(); ++q)
                        square[q] += mean[std::ptrdiff_t(q)] *
                                     (mean[std::ptrdiff_t(q)] - 2 * block.output_mean[q]);
-                     with_mean.add(i, block, score, square);
+                     with_mean.add(i, block, score, score, square);
                    });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;
   }

@@ -5,9 +5,10 @@
 #include <map>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "service/judgement/coverage.hpp"
 #include "service/judgement/gate.hpp"
-#include "service/judgement/offset.hpp"
 
 namespace reident {
 namespace {
@@ -21,42 +22,55 @@ double less_by_margin(double mrse_percent, const EquipmentConfig& limits) {
   return mrse_percent * (1 - limits.margin_percent / 100);
 }
 
-/// The member compared with the champion without what an offset explains of its errors there.
-Comparison without(OffsetFit offset, const League& league, const Member& member,
+/// Puts into `finding` what the scores say.
+void take_scores(const ScoreSeries& scores, Finding& finding) {
+  const auto recent = std::min<std::ptrdiff_t>(scores.scores.size(), 2 * blocks_of_cycle);
+  if (recent == 0) return;
+  finding.dependence = dependence(scores);
+  finding.log_wealth = log_wealth(scores, finding.dependence, 0);
+  finding.mean_score = scores.scores.mean();
+  finding.recent_score = scores.scores.tail(recent).mean();
+}
+
+/// The member compared with the champion without what an offset, which is fitted to them, explains
+/// of its errors there.
+Comparison without(OffsetFit& offset, const League& league, const Member& member,
                    const Comparison& compared) {
   for (const std::size_t i : compared.blocks)
     offset.add(phase_of(league.blocks[i]), *find(*league.champion, league.blocks[i].range.begin));
   Comparison result;
   for (const std::size_t i : compared.blocks) {
-    BlockScore rest = *find(*league.champion, league.blocks[i].range.begin);
-    rest.square = offset.rest(rest);
-    result.add(i, league.blocks[i], *find(member, rest.begin), rest);
+    const BlockScore& champion = *find(*league.champion, league.blocks[i].range.begin);
+    result.add(i, league.blocks[i], *find(member, champion.begin), champion, offset.rest(champion));
   }
   return result;
 }
 
-/// The past of the inputs' sensor at `place` is the champion's record before `since`; where that is
-/// short, its first cycles. Blocks that do not have its effect say nothing of it.
-SensorPast past_of(const League& league, std::size_t place, Time since) {
+/// The past of the inputs' sensor at `place` is the champion's record before the last change; where
+/// that is short, its first cycles. Blocks that do not have its effect say nothing of it.
+const SensorPast& past_of(const Standard& standard, std::size_t place) {
+  if (const auto known = standard.pasts.find(place); known != standard.pasts.end())
+    return known->second;
   PhasedScores scores;
-  for_each_score(league, *league.champion, INT64_MIN, 0,
+  for_each_score(standard.league, *standard.league.champion, INT64_MIN, 0,
                  [&](std::size_t, const auto& block, const BlockScore& score) {
                    if (has_effect(score, place) &&
-                       (block.range.begin < since || scores.size() < reference_blocks))
+                       (block.range.begin < standard.since || scores.size() < reference_blocks))
                      scores.emplace_back(phase_of(block), &score);
                  });
-  return {place, scores};
+  return standard.pasts.emplace(place, SensorPast(place, scores)).first->second;
 }
 
 bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
-  const auto& [league, limits, since, changed, assumed, regimes] = standard;
   std::map<int, std::vector<double>> losses;
   for (std::size_t i = 0; i < compared.blocks.size(); ++i)
-    losses[regimes[compared.blocks[i]]].push_back(-compared.scores.values()[i]);
-  const double threshold = std::log(static_cast<double>(losses.size()) / error_probability(limits));
-  const double rest = less_by_margin(1, limits), least = (1 - rest * rest) / (1 + rest * rest);
+    losses[standard.regimes[compared.blocks[i]]].push_back(-compared.scores.values()[i]);
+  const double threshold =
+      std::log(static_cast<double>(losses.size()) / error_probability(standard.limits));
+  const double rest = less_by_margin(1, standard.limits),
+               least = (1 - rest * rest) / (1 + rest * rest);
   return std::any_of(losses.begin(), losses.end(), [&](const auto& of_regime) {
-    const ScoreSeries loss = series(of_regime.second, assumed);
+    const ScoreSeries loss = series(of_regime.second, standard.assumed);
     return lower_mean(loss, dependence(loss), threshold) > least;
   });
 }
@@ -64,7 +78,7 @@ bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
 /// R2. Uncovered blocks count as if they were lost entirely.
 std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Comparison& compared, Finding& finding) {
-  const auto& [league, limits, since, changed, assumed, regimes] = standard;
+  const auto& [league, limits, since, changed, assumed, regimes, pasts] = standard;
   const std::int64_t champion = league.champion->version;
   const auto served = served_regimes(league, regimes, member, {changed, INT64_MAX});
   const double uncovered = finding.uncovered_share = uncovered_share(served);
@@ -94,7 +108,7 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     return std::nullopt;
   std::string suspects;
   finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
-  const auto suspect = [&](const std::string& sensor, const OffsetFit& offset) {
+  const auto suspect = [&](const std::string& sensor, OffsetFit offset) {
     const Comparison rest = without(offset, league, member, compared);
     const ScoreSeries scores = series(rest.scores.values(), standard.assumed);
     const double wealth = log_wealth(scores, dependence(scores), 0),
@@ -103,7 +117,8 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     // be lost, and a version that has learnt it errs by it once the bias ends.
     if (!(wealth > finding.log_threshold &&
           std::max(error / finding.champion_mrse_percent, most) * error > finding.mrse_percent))
-      suspects += (suspects.empty() ? "" : ", ") + sensor;
+      suspects += fmt::format("{}{} ({:.3g} too {})", suspects.empty() ? "" : ", ", sensor,
+                              std::abs(offset.offset()), offset.offset() < 0 ? "low" : "high");
     finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
     finding.mrse_without_offset = std::min(finding.mrse_without_offset, error);
   };
@@ -111,10 +126,9 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     if (std::ranges::count(league.unbound, league.outputs[q]) > 0)
       suspect(league.outputs[q], OffsetFit(q));
   for (std::size_t place = 0; place < league.sensors.size(); ++place)
-    if (std::ranges::count(league.unbound, league.sensors[place]) > 0) {
-      const SensorPast past = past_of(league, place, standard.since);
-      suspect(league.sensors[place], OffsetFit(past, place < league.derived_sensors ? most : 1));
-    }
+    if (std::ranges::count(league.unbound, league.sensors[place]) > 0)
+      suspect(league.sensors[place],
+              OffsetFit(past_of(standard, place), place < league.derived_sensors ? most : 1));
   if (suspects.empty()) return std::nullopt;
   return because<Code::bias_unverified>(league.champion->version, suspects);
 }
@@ -159,26 +173,21 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   for_each_score(league, member, INT64_MIN, 0,
                  [&](std::size_t i, const auto& block, const BlockScore& score) {
                    own.add(block, score.square);
-                   simulator.add(i, block, score, block.baseline_square);
+                   simulator.add(i, block, score, score, block.baseline_square);
                  });
   finding.blocks = own.blocks;
   finding.mrse_percent = own.mrse_percent();
   finding.fit_percent = own.fit_percent();
   finding.baseline_mrse_percent = simulator.other.mrse_percent();
+  take_scores(series(simulator.scores.values(), 0), finding);
   finding.recent_score = -finding.mrse_percent;
-  const ScoreSeries scores = series(simulator.scores.values(), 0);
-  if (scores.scores.size() > 0) {
-    finding.dependence = dependence(scores);
-    finding.log_wealth = log_wealth(scores, finding.dependence, 0);
-    finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
-    finding.mean_score = scores.scores.mean();
-  }
+  const bool is_known = !simulator.blocks.empty();
+  if (is_known) finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (finding.blocks < blocks_of_cycle)
       return because<Code::too_few_blocks>(finding.blocks, std::int64_t{blocks_of_cycle});
     if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
       return reason;
-    const bool is_known = scores.scores.size() > 0;
     const double error = is_known ? simulator.one.mrse_percent() : finding.mrse_percent;
     const double rival =
         is_known ? finding.baseline_mrse_percent : limits.baseline_mrse_percent.value_or(INFINITY);
@@ -200,27 +209,18 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
   finding.blocks = std::ssize(compared.blocks);
   finding.changed = standard.changed;
   finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
-  const auto not_better = [&] {
-    return because<Code::not_better>(champion, finding.mrse_percent, finding.champion_mrse_percent,
-                                     finding.blocks, finding.log_wealth, finding.log_threshold);
-  };
-  if (compared.blocks.empty()) {
-    finding.obstacle = not_better();
-    return finding;
-  }
   const ScoreSeries scores = series(compared.scores.values(), standard.assumed);
-  finding.dependence = dependence(scores);
-  finding.log_wealth = log_wealth(scores, finding.dependence, 0);
-  finding.mean_score = scores.scores.mean();
+  take_scores(scores, finding);
   finding.mrse_percent = compared.one.mrse_percent();
   finding.fit_percent = compared.one.fit_percent();
   finding.champion_mrse_percent = compared.other.mrse_percent();
-  const auto recent = std::min<std::ptrdiff_t>(scores.scores.size(), 2 * blocks_of_cycle);
-  finding.recent_score = scores.scores.tail(recent).mean();
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
       return reason;
-    if (!(finding.log_wealth > finding.log_threshold)) return not_better();
+    if (!(finding.log_wealth > finding.log_threshold))
+      return because<Code::not_better>(champion, finding.mrse_percent,
+                                       finding.champion_mrse_percent, finding.blocks,
+                                       finding.log_wealth, finding.log_threshold);
     if (!(finding.mrse_percent < less_by_margin(finding.champion_mrse_percent, limits)))
       return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,
                                           finding.champion_mrse_percent, finding.blocks);

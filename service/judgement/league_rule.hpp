@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "identification/statistics/betting.hpp"
 #include "service/config/config.hpp"
 #include "service/judgement/league.hpp"
+#include "service/judgement/offset.hpp"
 #include "service/judgement/scores.hpp"
 
 namespace reident {
@@ -46,6 +48,7 @@ struct Standard {
   storage::Time changed;  // the equipment is as it is from here on
   double assumed;         // dependence of scores
   const std::vector<int>& regimes;
+  std::map<std::size_t, SensorPast>& pasts;  // by their places, of the sensors that were asked for
 };
 
 /// A first version has to be good on telemetry of a whole cycle, and the simulator's own model is

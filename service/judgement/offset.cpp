@@ -9,15 +9,10 @@ using storage::BlockScore;
 
 namespace {
 
-/// Numbers of BlockScore::bias_effects for each sensor.
-std::size_t stride(const BlockScore& score) {
-  return 1 + 2 * score.square.size();
-}
-
 /// The sensor's first number; null where the record has none.
 const double* effect_in(const BlockScore& score, std::size_t place) {
-  const std::size_t first = place * stride(score);
-  return first + stride(score) <= score.bias_effects.size() ? &score.bias_effects[first] : nullptr;
+  const std::size_t numbers = 1 + 2 * score.square.size(), first = place * numbers;
+  return first + numbers <= score.bias_effects.size() ? &score.bias_effects[first] : nullptr;
 }
 
 }  // namespace
@@ -52,38 +47,47 @@ double SensorPast::departure(std::size_t phase, const BlockScore& score) const {
   return *effect_in(score, place_) - means_[phase];
 }
 
+OffsetFit::Effect OffsetFit::effect_on(std::size_t output, const BlockScore& score) const {
+  Effect effect{0, 0, score.square[output]};
+  if (!past_ && output == output_) effect.head<2>() << 1, -score.mean[output];
+  if (const double* known = past_ ? effect_in(score, past_->place()) : nullptr)
+    effect.head<2>() << known[1 + 2 * output], known[2 + 2 * output];
+  return effect;
+}
+
 void OffsetFit::add(std::size_t phase, const BlockScore& score) {
-  sums_.resize(score.mean.size());
-  const double* effect = past_ ? effect_in(score, past_->place()) : nullptr;
-  if (past_ && !effect) return;
+  sums_.resize(score.mean.size(), Effect::Zero());
+  if (past_ && !has_effect(score, past_->place())) return;
   const auto rows = static_cast<double>(score.rows);
   rows_ += rows;
   if (past_) departure_ += rows * past_->departure(phase, score);
+  for (std::size_t q = 0; q < sums_.size(); ++q) sums_[q] += rows * effect_on(q, score);
+}
+
+double OffsetFit::offset_in(std::size_t output) const {
+  const Effect& effect = sums_[output];
+  if (!(effect[0] > 0)) return 0;
+  const double offset = -effect[1] / effect[0];
+  if (!past_) return offset;
+  const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_;
+  return std::clamp(offset, moved - reach, moved + reach);
+}
+
+double OffsetFit::offset() const {
+  double offset = 0, most_explained = 0;
   for (std::size_t q = 0; q < sums_.size(); ++q) {
-    sums_[q].error += rows * score.mean[q];
-    if (!effect) continue;
-    sums_[q].effect_square += rows * effect[1 + 2 * q];
-    sums_[q].product += rows * effect[2 + 2 * q];
+    const double found = offset_in(q), share = explained(found, sums_[q]) / sums_[q][2];
+    if (share > most_explained) offset = found, most_explained = share;
   }
+  return offset;
 }
 
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
-  if (!past_) {
-    const double offset = sums_[output_].error / rows_;
-    squares[output_] += offset * (offset - 2 * score.mean[output_]);
-    return squares;
-  }
-  const double* effect = effect_in(score, past_->place());
-  if (!effect) return squares;
-  const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_;
   for (std::size_t q = 0; q < squares.size(); ++q) {
-    if (!(sums_[q].effect_square > 0)) continue;
-    const double offset =
-        std::clamp(-sums_[q].product / sums_[q].effect_square, moved - reach, moved + reach);
-    const double explained = -offset * (offset * effect[1 + 2 * q] + 2 * effect[2 + 2 * q]);
-    const double unknown = std::max(0.0, explained) * (1 - known_) * (1 - known_);
-    squares[q] = std::max(0.0, squares[q] - explained - unknown);
+    const double known = explained(offset_in(q), effect_on(q, score));
+    const double unknown = std::max(0.0, known) * (1 - known_) * (1 - known_);
+    squares[q] = std::max(0.0, squares[q] - known - unknown);
   }
   return squares;
 }

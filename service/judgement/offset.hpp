@@ -53,18 +53,26 @@ class OffsetFit {
   void add(std::size_t phase, const storage::BlockScore& score);
   /// The mean squares of a block's errors without what is explained.
   std::vector<double> rest(const storage::BlockScore& score) const;
+  /// How far the sensor would read too high, in its unit; 0 where that explains nothing. The output
+  /// whose error it explains most says so.
+  double offset() const;
 
  private:
-  struct Sums {
-    double error = 0, effect_square = 0, product = 0;
-  };
+  /// Mean square of what one unit of the offset takes from an output's error, its mean product with
+  /// the error, and the error's mean square.
+  using Effect = Eigen::Array3d;
+
+  static double explained(double offset, const Effect& effect) {
+    return -offset * (offset * effect[0] + 2 * effect[1]);
+  }
+  Effect effect_on(std::size_t output, const storage::BlockScore& score) const;
+  double offset_in(std::size_t output) const;
 
   std::size_t output_ = 0;
   const SensorPast* past_ = nullptr;  // null where the sensor is the output's
   double known_ = 1;
-  std::vector<Sums> sums_;  // by output
-  double rows_ = 0;
-  double departure_ = 0;  // times rows
+  std::vector<Effect> sums_;         // by output, times rows
+  double rows_ = 0, departure_ = 0;  // times rows
 };
 
 }  // namespace reident

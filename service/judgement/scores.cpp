@@ -29,37 +29,32 @@ bool counts(const Block& block) {
 }
 
 const BlockScore* find(const std::vector<BlockScore>& scores, storage::Time begin) {
-  const auto found = std::ranges::lower_bound(scores, begin, {}, &BlockScore::begin);
-  const bool is_there = found != scores.end() && found->begin == begin && found->rows > 0;
-  return is_there ? &*found : nullptr;
-}
-
-Squares squares_of(const BlockScore& one, const BlockScore& other) {
-  Squares squares;
-  for (std::size_t q = 0; q < one.square.size(); ++q) {
-    const double noise = std::max(std::min(one.noise[q], other.noise[q]), least_square);
-    squares.one.push_back(std::max(one.square[q], noise));
-    squares.other.push_back(std::max(other.square[q], noise));
-  }
-  return squares;
+  if (scores.empty() || begin < scores.front().begin || begin > scores.back().begin) return nullptr;
+  // A record has hardly a hole.
+  const double share = double(begin - scores.front().begin) /
+                       std::max(1.0, double(scores.back().begin - scores.front().begin));
+  auto found = scores.begin() + std::lround(share * double(scores.size() - 1));
+  if (found->begin != begin)
+    found = std::ranges::lower_bound(scores, begin, {}, &BlockScore::begin);
+  return found->begin == begin && found->rows > 0 ? &*found : nullptr;
 }
 
 void Scores::add(Squares squares) {
   cycle_.push_back(std::move(squares));
   if (cycle_.size() > blocks_of_cycle) cycle_.pop_front();
-  const std::size_t outputs = cycle_.back().one.size();
+  const std::size_t outputs = cycle_.back().size();
   double sum = 0;
   for (std::size_t q = 0; q < outputs; ++q) sum += score(q);
   values_.push_back(sum / static_cast<double>(outputs));
 }
 
 double Scores::score(std::size_t q) const {
-  const double one = cycle_.back().one[q], other = cycle_.back().other[q];
+  const auto [one, other] = cycle_.back()[q];
   if (!std::isfinite(one)) return -largest_score;
   if (!std::isfinite(other)) return largest_score;
   double both = 0;
   for (const Squares& block : cycle_)
-    if (std::isfinite(block.one[q] + block.other[q])) both += block.one[q] + block.other[q];
+    if (const double sum = block[q].first + block[q].second; std::isfinite(sum)) both += sum;
   return std::clamp((other - one) / both * static_cast<double>(cycle_.size()), -largest_score,
                     largest_score);
 }
@@ -84,19 +79,18 @@ double Sums::fit_percent() const {
 }
 
 void Comparison::add(std::size_t place, const Block& block, const BlockScore& of_one,
-                     const BlockScore& of_other) {
-  blocks.push_back(place);
-  scores.add(squares_of(of_one, of_other));
-  one.add(block, of_one.square);
-  other.add(block, of_other.square);
-}
-
-void Comparison::add(std::size_t place, const Block& block, const BlockScore& of_one,
-                     const std::vector<double>& square_of_other) {
+                     const BlockScore& of_other, const std::vector<double>& square_of_other) {
   if (square_of_other.empty()) return;
-  BlockScore rival = of_one;
-  rival.square = square_of_other;
-  add(place, block, of_one, rival);
+  Scores::Squares squares;
+  squares.reserve(square_of_other.size());
+  for (std::size_t q = 0; q < square_of_other.size(); ++q) {
+    const double noise = std::max(std::min(of_one.noise[q], of_other.noise[q]), least_square);
+    squares.emplace_back(std::max(of_one.square[q], noise), std::max(square_of_other[q], noise));
+  }
+  blocks.push_back(place);
+  scores.add(std::move(squares));
+  one.add(block, of_one.square);
+  other.add(block, square_of_other);
 }
 
 }  // namespace reident

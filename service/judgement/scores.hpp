@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "identification/numerics/matrix.hpp"
@@ -47,19 +48,14 @@ inline const storage::BlockScore* find(const Member& member, storage::Time begin
   return begin < member.record ? nullptr : find(member.scores, begin);
 }
 
-/// Mean squared errors of two runs on a block, by output. What is below the noise of the sensors
-/// counts as noise.
-struct Squares {
-  std::vector<double> one, other;
-};
-
-Squares squares_of(const storage::BlockScore& one, const storage::BlockScore& other);
-
 /// Scores of one run against another, from -1 to 1: by how much its mean square is below the
 /// other's, over that of both in the last cycle, and the mean over the outputs. A block in which
 /// both err little counts little, and none decides alone.
 class Scores {
  public:
+  /// Mean squared errors of both runs on a block, by output.
+  using Squares = std::vector<std::pair<double, double>>;
+
   /// Takes the next block in.
   void add(Squares squares);
   const std::vector<double>& values() const { return values_; }
@@ -91,12 +87,10 @@ struct Comparison {
   Sums one, other;
   std::size_t seen = 0;  // blocks of the league that were looked at
 
+  /// Takes in a block on which the other's mean squared errors are these, by output; what is below
+  /// the noise of the sensors counts as noise. Without errors the block says nothing.
   void add(std::size_t place, const storage::Block& block, const storage::BlockScore& of_one,
-           const storage::BlockScore& of_other);
-  /// With a rival whose mean squared errors are known, by output. Where they are empty they are
-  /// not.
-  void add(std::size_t place, const storage::Block& block, const storage::BlockScore& of_one,
-           const std::vector<double>& square_of_other);
+           const storage::BlockScore& of_other, const std::vector<double>& square_of_other);
 };
 
 }  // namespace reident

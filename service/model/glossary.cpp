@@ -19,8 +19,9 @@ struct Glossary {
       {"bias_unverified", "waits: a sensor may be biased",
        "The version is better than the champion but for what a biased sensor would show too, and "
        "no relation of sensors rules that out.",
-       "Look at the sensors that the reason names; then 'reident approve' or 'reject'. A declared "
-       "relation, or bias = \"approve\", decides such cases without you."},
+       "Look whether a sensor that the reason names reads as much too high or too low as it says; "
+       "then 'reident reject', or 'approve' where none does. A declared relation, or bias = "
+       "\"approve\", decides such cases without you."},
       {"cannot_follow", "the standby cannot follow",
        "The standby cannot record what the leader of its pair sends, or its registry is another "
        "one.",

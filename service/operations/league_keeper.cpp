@@ -154,8 +154,10 @@ void LeagueKeeper::read_members(const storage::Registry& registry) {
            spacecraft_, equipment_.name, std::string(name(Outcome::challenger)), passed_over))
     if (auto member = member_of(number)) {
       league_.challengers.push_back(*std::move(member));
-      waiting_[number] =
-          waits_for_operator(registry.decisions(spacecraft_, equipment_.name, number).back());
+      const storage::Decision last =
+          registry.decisions(spacecraft_, equipment_.name, number).back();
+      waiting_[number] = {waits_for_operator(last), {}};
+      if (last.kind == DecisionKind::wait) waiting_[number].code = last_code(last);
     }
   league_.admitted =
       registry.windows(spacecraft_, equipment_.name, std::string(name(Outcome::challenger)));
@@ -238,9 +240,8 @@ bool LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
 
 void LeagueKeeper::let_wait(const storage::Registry& registry, const LeagueWriter& writer,
                             const Finding& finding, const Reason& reason, Time now) {
-  const auto decisions = registry.decisions(spacecraft_, equipment_.name, finding.version);
-  if (decisions.back().kind == DecisionKind::wait &&
-      last_code(decisions.back()) != name(reason.code))
+  const auto& code = waiting_.at(finding.version).code;
+  if (code && *code != name(reason.code))
     decide(registry, writer, finding, DecisionKind::wait, {reason}, now);
 }
 
@@ -282,7 +283,7 @@ void LeagueKeeper::decide(const storage::Registry& registry, const LeagueWriter&
     if (!finding.obstacle) continue;
     // It waits for an operator, or does so no more: its record does not speak for it now.
     const bool asks = finding.obstacle->code == ReasonCode::bias_unverified;
-    if (asks || waiting_.at(finding.version))
+    if (asks || waiting_.at(finding.version).for_operator)
       let_wait(registry, writer, finding, *finding.obstacle, now);
   }
   if (std::ssize(waiting) > equipment_.members) {

@@ -60,6 +60,12 @@ class LeagueKeeper {
   void forget(storage::TimeRange range);
 
  private:
+  /// What the last decision about a version says of its waiting.
+  struct Waiting {
+    bool for_operator = false;
+    std::optional<std::string> code;  // absent where the decision is another one than to wait
+  };
+
   /// Makes the members those of the registry now; what the registry has of them is read.
   void read_members(const storage::Registry& registry);
   const BlockSamples& samples_of(const storage::Archive& archive, storage::Time begin);
@@ -89,7 +95,7 @@ class LeagueKeeper {
   League league_;
   Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
-  std::map<std::int64_t, bool> waiting_;           // of these, and whether for an operator
+  std::map<std::int64_t, Waiting> waiting_;        // of these
   std::optional<storage::Time> reached_;           // end of the last block
   std::optional<std::int64_t> failed_;             // champion that failed at the last look; 0: none
 };

@@ -158,9 +158,10 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
          registry_.scores(spacecraft, equipment, version.number, record)) {
       const auto block = blocks.find(score.begin);
       if (block == blocks.end() || score.rows == 0) continue;
-      cycle_of(block->second)
-          .errors[version.number]
-          .add(block->second, squares_of(score, score).one);
+      std::vector<double> squares = score.square;
+      for (std::size_t q = 0; q < squares.size(); ++q)
+        squares[q] = std::max({squares[q], score.noise[q], least_square});
+      cycle_of(block->second).errors[version.number].add(block->second, squares);
     }
   }
   Regrets regrets;

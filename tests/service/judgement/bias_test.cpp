@@ -83,6 +83,13 @@ TEST(Bias, VersionThatIsBetterByASensorsEffectAloneWaits) {
   EXPECT_EQ(sensor_of_an_input(0.05, 1).obstacle(), std::nullopt) << "it explains the least part";
 }
 
+TEST(Bias, TheQuestionSaysHowFarTheSensorWouldBeOff) {
+  for (auto [records, said] : {std::pair(better_by_a_constant(), "y (0.3 too high)"),
+                               {sensor_of_an_input(0.25, 1), "v (1 too high)"},
+                               {sensor_of_an_input(-0.25, -1), "v (1 too low)"}})
+    EXPECT_THAT(sentence(*records.findings().at(0).obstacle), ::testing::HasSubstr(said));
+}
+
 TEST(Bias, VersionIsNoBiasOfASensorThatReadsAsBefore) {
   EXPECT_EQ(sensor_of_an_input(0.25, 0).obstacle(), std::nullopt);
 }

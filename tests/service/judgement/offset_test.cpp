@@ -47,6 +47,18 @@ TEST(Offset, AConstantExplainsTheMean) {
   fit.add(0, score(2, 5, {}));
   fit.add(1, score(4, 17, {}));
   EXPECT_THAT(fit.rest(score(2, 5, {})), ElementsAre(DoubleNear(2, 1e-9)));
+  EXPECT_NEAR(fit.offset(), 3, 1e-9);
+}
+
+TEST(Offset, TheOutputWhoseErrorItExplainsMostSaysHowLargeItIs) {
+  // Of the first output's error an offset of 1 explains a hundredth, of the second's one of 4 all.
+  BlockScore two = score(0, 100, {5, 1, -1, 1, -4});
+  two.mean = {0, 0};
+  two.square = {100, 16};
+  const SensorPast unknown = past(5, 7);
+  OffsetFit fit(unknown, 1);
+  fit.add(0, two);
+  EXPECT_NEAR(fit.offset(), 4, 1e-9);
 }
 
 TEST(Offset, ASensorsEffectExplainsWhatItsPastAllows) {
@@ -69,6 +81,7 @@ TEST(Offset, ABlockWithoutTheEffectSaysNothing) {
   fit.add(0, block);
   fit.add(1, score(0, 4, {}));
   EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(0, 0.03)));
+  EXPECT_NEAR(fit.offset(), 2, 0.2);
   EXPECT_FALSE(has_effect(score(0, 4, {}), 0));
   EXPECT_TRUE(has_effect(block, 0));
   EXPECT_FALSE(has_effect(block, 1));

@@ -86,9 +86,9 @@ const Example of_a_member[] = {
      "Before the last change of the equipment it errs 5.000 %, more than twice what champion 3 "
      "errs "
      "there or since: 1.500 %."},
-    {because<Code::bias_unverified>(3, "V_BUS, I_BUS"),
-     "Better than champion 3 but for what a biased sensor of V_BUS, I_BUS would show too; no "
-     "relation binds it. Waits for an operator's approval."},
+    {because<Code::bias_unverified>(3, "V_BUS (0.3 too high), I_BUS (2 too low)"),
+     "Better than champion 3 but for what a biased sensor of V_BUS (0.3 too high), I_BUS (2 too "
+     "low) would show too; no relation binds it. Waits for an operator's approval."},
     {because<Code::too_soon>(hour, 3, 36 * hour),
      "The window ends 1h after that of champion 3; versions are at least 36h apart."},
     {because<Code::held>("ana", "eclipse season"),
