@@ -33,7 +33,8 @@ const BlockScore* find(const std::vector<BlockScore>& scores, storage::Time begi
   // A record has hardly a hole.
   const double share = double(begin - scores.front().begin) /
                        std::max(1.0, double(scores.back().begin - scores.front().begin));
-  auto found = scores.begin() + std::lround(share * double(scores.size() - 1));
+  auto found =
+      scores.begin() + static_cast<std::ptrdiff_t>(share * double(scores.size() - 1) + 0.5);
   if (found->begin != begin)
     found = std::ranges::lower_bound(scores, begin, {}, &BlockScore::begin);
   return found->begin == begin && found->rows > 0 ? &*found : nullptr;
