@@ -7,6 +7,8 @@
 
 #include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
+#include "identification/simulation/hole_bridging.hpp"
+#include "identification/simulation/initial_state.hpp"
 
 namespace reident::identification {
 namespace {
@@ -28,8 +30,27 @@ HeldOutError error_of(const Matrix& errors) {
   return result;
 }
 
-HeldOutErrors errors_with(const Matrix& errors, const Vector& shift) {
-  return {error_of(errors), error_of(errors.rowwise() - shift.transpose())};
+/// By what the errors of rows are too small which told the state of a run over them: the estimate
+/// of n numbers from K rows of p outputs leaves K p - n degrees of freedom. 1 elsewhere.
+/// `carried_on` says that the first state comes from other rows.
+Vector losses_to_states(const StateSpaceModel& model, const Record& record, RowRange rows,
+                        bool carried_on) {
+  Vector losses = Vector::Ones(rows.size());
+  const std::vector<Segment> segments = segments_within(record, rows);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& segment = segments[i];
+    if (i == 0 ? carried_on : is_bridged(record, segments[i - 1], segment)) continue;
+    const Index told = std::min(segment.size(), state_rows), numbers = told * model.outputs();
+    losses.segment(segment.begin - rows.begin, told)
+        .setConstant(
+            std::sqrt(double(numbers) / double(std::max<Index>(1, numbers - model.order()))));
+  }
+  return losses;
+}
+
+HeldOutErrors errors_with(const Matrix& errors, const Vector& shift, const Vector& losses) {
+  return {error_of(losses.asDiagonal() * errors),
+          error_of(losses.asDiagonal() * (errors.rowwise() - shift.transpose()))};
 }
 
 }  // namespace
@@ -66,7 +87,8 @@ HeldOutErrors held_out_errors(const Response& response, const Record& record, co
   const Matrix errors = record.y.middleRows(fold.tune.begin, fold.tune.size()) -
                         (forwards ? Matrix(y_hat.bottomRows(fold.tune.size()))
                                   : free_run(response.model, record, fold.tune));
-  return errors_with(errors, recent_operating_point(residuals, forwards));
+  return errors_with(errors, recent_operating_point(residuals, forwards),
+                     losses_to_states(response.model, record, fold.tune, forwards));
 }
 
 HeldOutErrors quick_held_out_errors(const StateSpaceModel& model, const Record& record,
@@ -78,9 +100,10 @@ HeldOutErrors quick_held_out_errors(const StateSpaceModel& model, const Record& 
                      fold.tune.end + (forwards ? 0 : beside)};
   const Matrix residuals =
       record.y.middleRows(run.begin, run.size()) - free_run(model, record, run);
-  const auto fitted = residuals.middleRows(forwards ? 0 : fold.tune.size(), beside);
-  return errors_with(residuals.middleRows(fold.tune.begin - run.begin, fold.tune.size()),
-                     fitted.colwise().mean().transpose());
+  const Index first = fold.tune.begin - run.begin, rows = fold.tune.size();
+  const auto fitted = residuals.middleRows(forwards ? 0 : rows, beside);
+  return errors_with(residuals.middleRows(first, rows), fitted.colwise().mean().transpose(),
+                     losses_to_states(model, record, run, false).segment(first, rows));
 }
 
 double held_out_error_of_constant(const Record& record, const std::vector<Fold>& folds) {

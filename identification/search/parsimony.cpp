@@ -20,6 +20,14 @@ constexpr double least_deviation = 1e-6;  // of an output's: below it errors are
 constexpr double chance_deviations = 4;
 constexpr double certain_loss = 2;  // standard errors
 
+/// Rows of segments that lie so many behind their first.
+double rows_behind(Index first, const std::vector<Segment>& segments) {
+  double rows = 0;
+  for (const Segment& segment : segments)
+    rows += double(std::max<Index>(0, segment.size() - first));
+  return rows;
+}
+
 double squares_of_white(const Vector& errors, const ErrorColour& colour,
                         const std::vector<Segment>& segments) {
   const Vector& a = colour.past.coefficients.back();
@@ -155,6 +163,8 @@ RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, Row
       mixed_{record.period_s, record.u, record.y * mixtures_.transpose(), record.segments},
       rows_(rows),
       order_(fit.model.order()),
+      parameters_(parameters_of(order_, record.u.cols(), 1, direct,
+                                std::ssize(segments_within(record, rows)))),
       least_rate_(least_rate),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
       squares_(whitened_squares(fit, direct, colours_)),
@@ -173,6 +183,11 @@ Vector RicherFit::whitened_squares(const Response& fit, bool direct,
   return squares;
 }
 
+double RicherFit::degrees_of_freedom(const ErrorColour& colour) const {
+  const Index past = colour.past.coefficients.back().size();
+  return std::max(1.0, rows_behind(past, segments_from(mixed_, rows_)) - double(parameters_));
+}
+
 bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const {
   assert(extra >= 1);
   const double count = double(rows_.size());
@@ -183,7 +198,11 @@ bool RicherFit::refutes(const Response& simple, bool direct, Index extra) const 
   const double limit = chi_squared_limit(0.01 / places, int(extra));
   const auto errs_too_much = [&](const std::vector<ErrorColour>& colours) {
     const Vector more = whitened_squares(simple, direct, colours);
-    return !(count * ((more.array() + floor) / (squares_.array() + floor)).log().sum() <= limit);
+    double ratio = 0;  // of likelihoods, its logarithm
+    for (Index q = 0; q < more.size(); ++q)
+      ratio += degrees_of_freedom(colours[static_cast<std::size_t>(q)]) *
+               std::log((more(q) + floor) / (squares_(q) + floor));
+    return !(ratio <= limit);
   };
   // The richer one may have followed a drift, whose colour is in the simpler one's errors alone.
   return errs_too_much(colours_) &&

@@ -45,10 +45,14 @@ class RicherFit {
   Vector whitened_squares(const Response& fit, bool direct,
                           const std::vector<ErrorColour>& colours) const;
 
+  /// Errors of an output that are made white by this colour, less the parameters of its fit.
+  double degrees_of_freedom(const ErrorColour& colour) const;
+
   Matrix mixtures_;  // p x p, orthogonal
   Record mixed_;     // its outputs are the mixtures
   RowRange rows_;
   Index order_;
+  Index parameters_;  // of a fit of this order to one output
   double least_rate_;
   std::vector<ErrorColour> colours_;
   Vector squares_;  // of its own

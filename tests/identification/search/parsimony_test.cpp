@@ -82,6 +82,26 @@ INSTANTIATE_TEST_SUITE_P(Simulated, Parsimony,
                                          Kind{"ThreeStates", 3, 2, 2, 1500, 0.005}),
                          [](const auto& kind) { return kind.param.name; });
 
+// Each segment has a state of its own, which takes from the errors of its rows.
+TEST(Parsimony, ManyShortSegmentsGetNoMoreStatesThanOneRecord) {
+  const std::uint64_t records = records_asked();
+  for (const Index rows : {8, 12, 20}) {
+    std::uint64_t right = 0;
+    for (std::uint64_t seed = 1; seed <= records; ++seed) {
+      test::Noise noise(seed);
+      const Index order = 1 + Index(seed % 2);
+      const StateSpaceModel system = test::random_system(noise, order, 1, 1);
+      Record record = test::excited(system, noise, 800 / rows * rows, 0.02);
+      record.segments.clear();
+      for (Index k = 0; k < record.rows(); k += rows)
+        record.segments.push_back({k, k + rows, 1000 * k});
+      right += identified(record).recipe.order == static_cast<int>(order);
+    }
+    EXPECT_GE(right, records * 9 / 10) << rows;
+    RecordProperty("right_of_" + std::to_string(rows), std::to_string(right));
+  }
+}
+
 /// A coarse sensor's steps follow the output: a step of the input has the same stairs each time,
 /// which states imitate.
 TEST(Parsimony, StepsOfASensorGetNoStates) {
