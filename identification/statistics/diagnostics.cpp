@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/prediction.hpp"
@@ -58,7 +59,38 @@ std::vector<InputCorrelation> input_correlations(std::vector<Series>& inputs,
   return result;
 }
 
+/// Without what is linear in the input; absent where nothing else is there.
+std::optional<Series> without_linear(const Vector& bend, const Series& input) {
+  constexpr double least_share = 1e-3;
+  const Vector& u = input.centred();
+  const Vector moves = bend.array() - bend.mean();
+  const Vector left = moves - u * (moves.dot(u) / u.squaredNorm());
+  if (!(left.squaredNorm() > least_share * moves.squaredNorm())) return std::nullopt;
+  return Series(left, input.segments());
+}
+
 }  // namespace
+
+std::vector<InputCorrelation> bends(const StateSpaceModel& model, const Record& record,
+                                    RowRange run, RowRange scored,
+                                    const std::optional<Vector>& x0) {
+  const Scored part = scored_part(record, scored);
+  std::vector<Series> residuals = residuals_of(
+      part, free_run(model, record, run, x0).middleRows(scored.begin - run.begin, scored.size()));
+  std::vector<InputCorrelation> result;
+  for (std::size_t q = 0; q < residuals.size(); ++q)
+    for (std::size_t j = 0; j < part.inputs.size(); ++j) {
+      const Vector& u = part.inputs[j].centred();
+      InputCorrelation found{static_cast<Index>(j), static_cast<Index>(q), {}};
+      for (const Vector& bend : {Vector(u.cwiseAbs2()), Vector(u.cwiseProduct(u.cwiseAbs()))})
+        if (auto series = without_linear(bend, part.inputs[j]))
+          if (const auto one = summary(cross_correlogram(*series, residuals[q], lags));
+              std::abs(one.largest) > std::abs(found.correlation.largest))
+            found.correlation = one;
+      result.push_back(found);
+    }
+  return result;
+}
 
 Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRange run,
                      RowRange scored, const std::optional<Vector>& x0) {

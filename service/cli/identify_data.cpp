@@ -352,7 +352,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   data.warnings.insert(data.warnings.end(), grid.warnings.begin(), grid.warnings.end());
   data.file_ticks = std::move(grid.tick_of_row);
   if (request.screening) data.left_out = leave_out_faults(data.record, columns);
-  if (!request.hold_ns) warn_of_held_rows(data);
+  warn_of_held_rows(data);
   if (auto refusal = derive_inputs(expressions, data)) return *refusal;
   const auto record_row = [&](Index row) {
     return first_row_at(data.record, data.file_ticks[static_cast<std::size_t>(row)]);
@@ -368,6 +368,14 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
                     data.left_out.empty() ? "" : "; ", fmt::join(left_out_sentences(data), "; "))};
   if (!has_time) warn_of_late_start(data, identify.begin);
   return data;
+}
+
+Index file_row(const IdentifyData& data, Index row) {
+  const auto segment = std::find_if(data.record.segments.begin(), data.record.segments.end(),
+                                    [row](const auto& one) { return row < one.end; });
+  const std::int64_t tick = segment->first_tick + (row - segment->begin);
+  return std::lower_bound(data.file_ticks.begin(), data.file_ticks.end(), tick) -
+         data.file_ticks.begin();
 }
 
 }  // namespace reident::cli

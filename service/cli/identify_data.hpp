@@ -59,4 +59,7 @@ struct IdentifyData {
 
 std::variant<IdentifyData, Refusal> read_data(const DataRequest& request);
 
+/// Returns the first row of the file at the tick of this row of the record, or behind it.
+identification::Index file_row(const IdentifyData& data, identification::Index row);
+
 }  // namespace reident::cli

@@ -215,6 +215,7 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
   finding.fit_percent = compared.one.fit_percent();
   finding.champion_mrse_percent = compared.other.mrse_percent();
   finding.obstacle = [&]() -> std::optional<Reason> {
+    if (compared.blocks.empty()) return because<Code::not_compared>(champion);
     if (auto reason = inadmissible(finding.mrse_percent, finding.fit_percent, limits))
       return reason;
     if (!(finding.log_wealth > finding.log_threshold))

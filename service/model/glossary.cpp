@@ -132,6 +132,11 @@ struct Glossary {
       {"not_better_where_validated", "not better than the champion",
        "On its own validation part the model errs no less than the champion. The champion stays.",
        ""},
+      {"not_compared", "not compared yet",
+       "No block of telemetry since the last change of the equipment has been scored with the "
+       "version "
+       "and the champion both. It waits for telemetry.",
+       ""},
       {"not_covered", "has not met all regimes",
        "There were operating regimes that the version has not met, and what it gains "
        "does "

@@ -66,6 +66,7 @@ enum class ReasonCode {
   first_version,
   better,
   // It does not: the first condition that its record does not meet.
+  not_compared,         // R1
   not_better,           // R1
   within_margin,        // R1
   not_covered,          // R2
@@ -169,6 +170,9 @@ struct Catalogue {
        "{mean_score:.3f}, and at least {lower_score:.3f} with a confidence of "
        "{confidence_percent:g} %."},
 
+      {not_compared, "not_compared", none,
+       "Not compared with champion {champion:d} yet: no block since the last change of the "
+       "equipment has an error of both."},
       {not_better, "not_better", none,
        "Not shown to be better than champion {champion:d}: MRSE {mrse_percent:.3f} % and "
        "{champion_mrse_percent:.3f} % on {blocks:d} blocks, log of the evidence {log_wealth:.2f} "

@@ -19,6 +19,7 @@ Place place_of(std::string_view obstacle) {
   constexpr std::array places = {std::pair{Code::not_finite, at_window},
                                  std::pair{Code::error_above_limit, at_window},
                                  std::pair{Code::not_better_than_mean, at_window},
+                                 std::pair{Code::not_compared, evidence},
                                  std::pair{Code::not_better, evidence},
                                  std::pair{Code::within_margin, margin},
                                  std::pair{Code::not_covered, coverage},
@@ -33,6 +34,19 @@ Place place_of(std::string_view obstacle) {
     return name(place.first) == obstacle;
   });
   return found == places.end() ? none : found->second;
+}
+
+/// Whether the offset of a sensor was looked at; older decisions know the evidence alone.
+bool is_offset_known(const Finding& finding) {
+  return finding.mrse_without_offset > 0 || finding.wealth_without_offset > finding.log_threshold;
+}
+
+/// Whether an offset explains too much (R3).
+bool is_offset(const Finding& finding) {
+  const double error = finding.mrse_without_offset;
+  return error > 0 &&
+         !(finding.wealth_without_offset > finding.log_threshold &&
+           std::max(error / finding.champion_mrse_percent, most) * error > finding.mrse_percent);
 }
 
 std::string offset(const Finding& finding) {
@@ -87,16 +101,16 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        limits.bias == BiasPolicy::approve ? "not asked for: bias = \"approve\"" : offset(finding),
        {}},
       {"R5", "policy: interval, hold, approval", "", {}}};
-  const Place place = place_of(obstacle);
+  Place place = place_of(obstacle);
+  // One that waited for an operator has left a full league.
+  if (place == none && obstacle == name(Code::league_full) && is_offset(finding)) place = bias;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     if (i <= place) conditions[i].holds = i < place;
     if (i > place) conditions[i].found.clear();
   }
   if (place == policy)
     if (const auto* entry = explanation_of(obstacle)) conditions[policy].found = entry->words;
-  // Where it was asked and holds, the wealth without an offset is above the threshold (Judge).
-  if (place > bias && limits.bias == BiasPolicy::wait &&
-      finding.wealth_without_offset <= finding.log_threshold)
+  if (place > bias && limits.bias == BiasPolicy::wait && !is_offset_known(finding))
     conditions[bias].found = "not asked: relations bind the sensors, or it ran before";
   return conditions;
 }

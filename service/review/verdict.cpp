@@ -67,10 +67,13 @@ Verdict verdict_of(const history::HistoryReader& history, const StoredVersion& s
       const bool asks = code == name(ReasonCode::waits_for_operator);  // its sentence says so
       return {finding->obstacle ? (asks ? "" : "Waits. ") + sentence(*finding->obstacle)
                                 : "Waits, and all conditions on its record hold.",
-              conditions_of(*finding, code, record->limits)};
+              conditions_of(*finding, code, record->limits), std::move(finding)};
     }
   const storage::Decision& last = story.decisions.back();
-  Verdict verdict{fmt::format("{} by {}: {}", past(last.kind), last.actor, last.reason), {}};
+  Verdict verdict{fmt::format("{} by {}{}{}", past(last.kind), last.actor,
+                              last.reason.empty() ? "" : ": ", last.reason),
+                  {},
+                  {}};
   verdict.sentence.front() -= 'a' - 'A';
   for (auto one = story.decisions.rbegin(); record && one != story.decisions.rend(); ++one) {
     const nlohmann::ordered_json evidence = evidence_of(*one);

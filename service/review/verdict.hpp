@@ -1,6 +1,7 @@
 // What speaks for a version and against it, in one sentence and by condition.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace reident {
 struct Verdict {
   std::string sentence;
   std::vector<Condition> conditions;  // empty where it was never compared with a champion
+  std::optional<Finding> now;         // of a version that waits, from its record
 };
 
 /// Returns what the record of a version that waits says now; else its last decision, with the

@@ -138,8 +138,11 @@ Json waiting_view(const Stored& stored, const HttpRequest&) {
     line["version"] = id_value(row.decision.version);
     line["since"] = time_value(row.decision.time);
     line["window"] = range_value(row.window);
-    line["error_percent"] = evidence_of(story->attempt).value("mrse_percent", Json());
-    line["verdict"] = verdict_of(stored.history, *story).sentence;
+    const Verdict verdict = verdict_of(stored.history, *story);
+    line["error_percent"] = verdict.now && verdict.now->blocks > 0
+                                ? Json(verdict.now->mrse_percent)
+                                : evidence_of(story->attempt).value("mrse_percent", Json());
+    line["verdict"] = verdict.sentence;
     line["supersedes"] = ids_value(row.supersedes);
     list.push_back(std::move(line));
     stored.check_time();

@@ -96,7 +96,7 @@ std::string residuals_text(const Diagnostics& diagnostics, const Names& inputs,
          diagnostics.predicted ? diagnostics.prediction_inputs : diagnostics.free_run_inputs)
       if (pair.output == static_cast<Index>(q)) explained += input_text(pair, inputs);
     if (explained.empty() && !inputs.empty() && diagnostics.whiteness[q].correlation.lags > 0)
-      explained = "; no input would explain more of it";
+      explained = "; no input would explain more of it linearly";
     text += fmt::format("  {}: {}{}\n", outputs[q], whiteness_text(diagnostics.whiteness[q]),
                         explained);
   }

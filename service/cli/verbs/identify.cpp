@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "identification/search/delays.hpp"
+#include "identification/simulation/free_run.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/scores.hpp"
+#include "identification/statistics/level_shift.hpp"
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
 #include "service/cli/identify_result.hpp"
@@ -148,6 +150,43 @@ void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
 
 /// One simulation from x0 at the first identification row to the last row of both ranges; rows
 /// before the identification need another.
+void warn_of_bends(const std::vector<identification::InputCorrelation>& bends,
+                   IdentifyOutcome& outcome) {
+  constexpr double worth_a_word = 0.4;  // a sixth of what is left
+  for (const auto& [input, output, found] : bends)
+    if (found.lags > 0 && found.lag >= 0 && found.significant() &&
+        std::abs(found.largest) > worth_a_word)
+      outcome.warnings.push_back(fmt::format(
+          "{} is not linear in {}: the square of this, or its product with its size, would explain "
+          "{:.2g} % of what the free run leaves; --derive an input that {} is linear in, or "
+          "--regime",
+          outcome.outputs[static_cast<std::size_t>(output)],
+          outcome.inputs[static_cast<std::size_t>(input)], 100 * found.largest * found.largest,
+          outcome.outputs[static_cast<std::size_t>(output)]));
+}
+
+/// Of the residuals over `rows`.
+void warn_of_shifts(const IdentifyData& data, RowRange rows, const identification::Matrix& y_hat,
+                    IdentifyOutcome& outcome) {
+  std::vector<RowRange> segments;
+  for (const auto& segment : segments_from(data.record, rows))
+    segments.push_back({segment.begin, segment.end});
+  identification::Matrix columns(rows.size(), data.record.u.cols() + y_hat.cols());
+  columns << data.record.u.middleRows(rows.begin, rows.size()), y_hat;
+  for (Index q = 0; q < y_hat.cols(); ++q) {
+    const auto shift = level_shift(
+        data.record.y.col(q).segment(rows.begin, rows.size()) - y_hat.col(q), columns, segments);
+    if (!shift) continue;
+    const Index row = file_row(data, rows.begin + shift->row);
+    outcome.warnings.push_back(fmt::format(
+        "{} is {} by {:.3g} from about row {} on, which the inputs do not explain: its sensor has "
+        "another zero or drifts, or the equipment is another; identify on one side with --identify "
+        "A:B, or name a column that tells them apart with --regime",
+        outcome.outputs[static_cast<std::size_t>(q)], shift->size < 0 ? "lower" : "higher",
+        std::abs(shift->size), row));
+  }
+}
+
 void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
   const Identified& identified = outcome.identified;
   const bool before = data.validate.begin < data.identify.begin;
@@ -157,9 +196,11 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
   outcome.identify =
       score_free_run(identified.model, data.record, run, data.identify, identified.x0);
   if (before) warn_of_states(data, data.validate, false, outcome.warnings);
-  outcome.diagnostics =
-      before ? diagnose(identified.model, data.record, data.validate, data.validate)
-             : diagnose(identified.model, data.record, run, data.validate, identified.x0);
+  const RowRange scored_run = before ? data.validate : run;
+  const auto x0 = before ? std::nullopt : std::optional(identified.x0);
+  outcome.diagnostics = diagnose(identified.model, data.record, scored_run, data.validate, x0);
+  warn_of_bends(bends(identified.model, data.record, scored_run, data.validate, x0), outcome);
+  warn_of_shifts(data, run, free_run(identified.model, data.record, run, identified.x0), outcome);
 }
 
 int print_rejection(const Verdict& verdict, const Arguments& arguments, const IdentifyData& data) {

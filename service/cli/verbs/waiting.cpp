@@ -10,6 +10,7 @@
 #include "service/cli/verb.hpp"
 #include "service/operations/commands.hpp"
 #include "service/review/evidence.hpp"
+#include "service/review/verdict.hpp"
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
@@ -40,7 +41,13 @@ std::string numbers_text(const std::vector<std::int64_t>& numbers) {
   return joined(texts) + (more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-void print_table(const std::vector<WaitingRow>& rows) {
+/// A version that waits, and what speaks for it and against it now.
+struct Waiting {
+  WaitingRow row;
+  Verdict verdict;
+};
+
+void print_table(const std::vector<Waiting>& list) {
   constexpr auto right = Table::Align::right;
   Table table({{"version"},
                {"since", right},
@@ -49,21 +56,25 @@ void print_table(const std::vector<WaitingRow>& rows) {
                {"supersedes"},
                {"why it waits"}});
   const storage::Time now = utc_now();
-  for (const WaitingRow& row : rows) {
-    const ordered_json evidence = evidence_of(row.decision);
-    table.add(
-        {fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
-         rough_duration_text(now - row.decision.time), evidence_number(evidence, "mrse_percent"),
-         evidence.contains("champion") ? evidence_number(evidence, "champion_mrse_percent") : "-",
-         numbers_text(row.supersedes), row.decision.reason});
+  for (const auto& [row, verdict] : list) {
+    const ordered_json then = evidence_of(row.decision);
+    const auto error = [&](const char* key, double Finding::*figure) {
+      if (!verdict.now) return evidence_number(then, key);
+      return verdict.now->blocks > 0 ? fmt::format("{:.4g}", (*verdict.now).*figure) : "-";
+    };
+    table.add({fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
+               rough_duration_text(now - row.decision.time),
+               error("mrse_percent", &Finding::mrse_percent),
+               error("champion_mrse_percent", &Finding::champion_mrse_percent),
+               numbers_text(row.supersedes), verdict.sentence});
   }
   fmt::print("{}", table.text(terminal_width()));
   fmt::print("'reident why VERSION' shows its record, 'reident approve' and 'reject' answer it.\n");
 }
 
-void print_json(const std::vector<WaitingRow>& rows) {
+void print_json(const std::vector<Waiting>& waiting) {
   ordered_json list = ordered_json::array();
-  for (const WaitingRow& row : rows)
+  for (const auto& [row, verdict] : waiting)
     list.push_back(
         {{"spacecraft", row.decision.spacecraft},
          {"equipment", row.decision.equipment},
@@ -71,6 +82,7 @@ void print_json(const std::vector<WaitingRow>& rows) {
          {"since", time_text(row.decision.time)},
          {"window", {{"begin", time_text(row.window.begin)}, {"end", time_text(row.window.end)}}},
          {"supersedes", row.supersedes},
+         {"verdict", verdict.sentence},
          {"reason", row.decision.reason},
          {"evidence", ordered_json::parse(row.decision.evidence_json, nullptr, false)}});
   for (ordered_json& row : list)
@@ -92,13 +104,17 @@ int run(const Arguments& arguments) {
       return (!wanted.equipment.empty() && row.decision.equipment != wanted.equipment) ||
              (!wanted.spacecraft.empty() && row.decision.spacecraft != wanted.spacecraft);
     });
+    std::vector<Waiting> waiting;
+    for (WaitingRow& row : rows)
+      if (const auto story = stored_version(readers.history, name_of(row), row.decision.version))
+        waiting.push_back({std::move(row), verdict_of(readers.history, *story)});
     if (arguments.json)
-      print_json(rows);
-    else if (rows.empty())
+      print_json(waiting);
+    else if (waiting.empty())
       fmt::print("no version waits for an operator\n");
     else
-      print_table(rows);
-    return static_cast<int>(rows.empty() ? exit_done : exit_failed);
+      print_table(waiting);
+    return static_cast<int>(waiting.empty() ? exit_done : exit_failed);
   });
 }
 
@@ -110,7 +126,7 @@ std::function<int()> declare(CLI::App& command) {
   command.add_flag("--json", arguments->json, "one JSON object");
   command.footer(
       "The errors are those of the version and of the champion on the blocks that both were scored "
-      "on when it came to wait.\n"
+      "on since the last change of the equipment.\n"
       "Versions that wait for telemetry are not listed: 'reident history' has them. To approve a "
       "version rejects those that it supersedes: earlier ones of its equipment that wait too.\n"
       "Example:\n"

@@ -1,9 +1,11 @@
 #include "identification/statistics/diagnostics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "identification/simulation/free_run.hpp"
 #include "identification/subspace/kalman.hpp"
 #include "tests/support/systems.hpp"
 
@@ -53,6 +55,33 @@ TEST(Diagnostics, OfTheTrueModelFindNothing) {
   EXPECT_LT(not_white, 12);
   EXPECT_LT(significant, 0.1 * pairs);
   EXPECT_LT(free_significant, 0.1 * pairs);
+}
+
+TEST(Diagnostics, AnInputThatSaturatesOrActsBySquaresBends) {
+  test::Noise noise(7);
+  const auto bend_of = [&](const auto& acts) {
+    Plant plant = innovations(noise, 1000, 1);
+    plant.model = test::random_system(noise, 1, 1, 1, 0.9);
+    const Matrix u = noise.normal(1000, 1);
+    const Record acting = contiguous_record(1, u.unaryExpr(acts), Matrix::Zero(1000, 1));
+    const Matrix y = free_run(plant.model, acting, acting.all(), Vector::Zero(1));
+    const Record record = contiguous_record(1, u, y + 0.01 * noise.normal(1000, 1));
+    return bends(plant.model, record, record.all(), {200, 1000}, Vector::Zero(1)).at(0).correlation;
+  };
+  for (const auto& found : {bend_of([](double u) { return std::clamp(u, -0.7, 0.7); }),
+                            bend_of([](double u) { return u + 0.2 * u * u; })}) {
+    EXPECT_TRUE(found.significant());
+    EXPECT_GT(std::abs(found.largest), 0.25);
+  }
+  EXPECT_LT(std::abs(bend_of([](double u) { return u; }).largest), 0.2);
+}
+
+TEST(Diagnostics, AnInputOfTwoValuesCannotBend) {
+  test::Noise noise(8);
+  const Plant plant = innovations(noise, 1000, 1);
+  Record record = plant.record;
+  record.u = record.u.unaryExpr([](double u) { return u > 0 ? 1.0 : 0.0; });
+  EXPECT_EQ(bends(plant.model, record, record.all(), {200, 1000})[0].correlation.lags, 0);
 }
 
 TEST(Diagnostics, AWrongGainLeavesColouredResiduals) {

@@ -315,7 +315,7 @@ TEST(League, NothingIsDecidedOnBlocksOfWhichLittleIsBelieved) {
   Records records(160);
   records.champion(white(0.04)).challenger(white(0.01), 40);
   for (Block& block : records.league().blocks) block.believed = 0.4;
-  EXPECT_EQ(records.obstacle(), Code::not_better);
+  EXPECT_EQ(records.obstacle(), Code::not_compared);
   EXPECT_EQ(records.findings()[0].blocks, 0);
 }
 

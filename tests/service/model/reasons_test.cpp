@@ -74,6 +74,9 @@ const Example of_a_member[] = {
     {because<Code::within_margin>(3, 15.0, 5.0, 5.5, 40),
      "Does not err less than champion 3 by the margin of 15 %: MRSE 5.000 % and 5.500 % on 40 "
      "blocks."},
+    {because<Code::not_compared>(3),
+     "Not compared with champion 3 yet: no block since the last change of the equipment has an "
+     "error of both."},
     {because<Code::not_covered>(3, 24.6),
      "Cannot replace champion 3 yet: it has not met the operating regimes of 25 % of the time "
      "since the last change of the equipment."},

@@ -21,6 +21,23 @@ TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
   EXPECT_EQ(bias("not_better").holds, std::nullopt);
 }
 
+TEST(Conditions, AVersionThatAskedAnOperatorLeavesAFullLeagueWithThatQuestionOpen) {
+  Finding finding;
+  finding.log_threshold = 4;
+  finding.log_wealth = 8;
+  finding.champion_mrse_percent = 10;
+  finding.mrse_percent = 1;
+  finding.wealth_without_offset = 6;
+  const auto bias = [&](double mrse_without_offset) {
+    finding.mrse_without_offset = mrse_without_offset;
+    return conditions_of(finding, "league_full", EquipmentConfig()).at(5);
+  };
+  EXPECT_EQ(bias(0.5).holds, false);
+  EXPECT_EQ(bias(0.5).found, "6.00; champion's MRSE 0.5 %");
+  EXPECT_EQ(bias(9).holds, true) << "no offset explains that";
+  EXPECT_EQ(bias(0).holds, true) << "it was not asked";
+}
+
 TEST(Conditions, ErrorsOverTheRegimesAreShownWhereTheyAreKnown) {
   Finding finding;
   const EquipmentConfig limits;

@@ -45,7 +45,7 @@ TEST(DiagnosticsText, GivesTheErrorWithItsIntervalAndItsGrowth) {
             "output  1 ahead  10 ahead  free run\n"
             "y1          2.5      6.25     10.53\n"
             "what the prediction of the next row leaves:\n"
-            "  y1: white, nothing left but chance; no input would explain more of it\n");
+            "  y1: white, nothing left but chance; no input would explain more of it linearly\n");
 }
 
 TEST(DiagnosticsText, SaysHowFarFromWhiteTheResidualsAre) {

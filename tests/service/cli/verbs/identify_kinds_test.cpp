@@ -1,4 +1,5 @@
 // What reident identify prints of kinds of models.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -15,6 +16,7 @@ namespace {
 
 using Strings = std::vector<std::string>;
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 using IdentifyKinds = test::CliTest;
 
@@ -85,11 +87,31 @@ TEST_F(IdentifyKinds, AnOutputThatIsHeldForSomeRowsIsNamed) {
             x = 0.9 * x + 0.1 * u;
             return fmt::format("{:.4f}", sent);
           }));
-    const json printed = json_of({"identify", "held.csv", "--input", "u", "--output", "y"});
-    EXPECT_EQ(printed["warnings"].dump().find("y stands for 4 rows") != std::string::npos,
-              held == 4)
-        << printed["warnings"];
+    Strings words = {"identify", "held.csv", "--input", "u", "--output", "y"};
+    for (const bool with_hold : {false, true}) {
+      if (with_hold) words.insert(words.end(), {"--hold", "3s"});
+      const json printed = json_of(words);
+      EXPECT_EQ(printed["warnings"].dump().find("y stands for 4 rows") != std::string::npos,
+                held == 4)
+          << printed["warnings"];
+    }
   }
+}
+
+TEST_F(IdentifyKinds, AnotherZeroAndAnInputThatSaturatesAreNamed) {
+  const auto warnings_of = [this](double shift, double limit) {
+    double x = 0;
+    write("odd.csv", stepped("u,y", 900, [&](int row, double u, double noise) {
+            const double y = x + 0.01 * noise + (row >= 400 ? shift : 0);
+            x = 0.9 * x + 0.1 * std::clamp(u, -limit, limit);
+            return fmt::format("{:.5f}", y);
+          }));
+    return json_of({"identify", "odd.csv", "--input", "u", "--output", "y"})["warnings"].dump();
+  };
+  EXPECT_EQ(warnings_of(0, 99), "[]");
+  EXPECT_THAT(warnings_of(0.5, 99),
+              ::testing::ContainsRegex("y is higher .* from about row (39|40)"));
+  EXPECT_THAT(warnings_of(0, 0.4), HasSubstr("y is not linear in u"));
 }
 
 }  // namespace
