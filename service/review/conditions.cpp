@@ -19,7 +19,7 @@ Place place_of(std::string_view obstacle) {
   constexpr std::array places = {std::pair{Code::not_finite, at_window},
                                  std::pair{Code::error_above_limit, at_window},
                                  std::pair{Code::not_better_than_mean, at_window},
-                                 std::pair{Code::not_compared, evidence},
+                                 std::pair{Code::not_compared, at_window},
                                  std::pair{Code::not_better, evidence},
                                  std::pair{Code::within_margin, margin},
                                  std::pair{Code::not_covered, coverage},
@@ -73,7 +73,9 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
   std::vector<Condition> conditions = {
       {"R4",
        fmt::format("MRSE at most {:g} %, fit above 0 %", limits.max_mrse_percent),
-       fmt::format("{:.3g} %, {:.1f} %", finding.mrse_percent, finding.fit_percent),
+       finding.blocks > 0
+           ? fmt::format("{:.3g} %, {:.1f} %", finding.mrse_percent, finding.fit_percent)
+           : "no block yet",
        {}},
       {"R1",
        fmt::format("log of the evidence above {:.2f}", finding.log_threshold),

@@ -21,6 +21,13 @@ TEST(Conditions, AQuestionThatWasNotAskedShowsNoFigure) {
   EXPECT_EQ(bias("not_better").holds, std::nullopt);
 }
 
+TEST(Conditions, AVersionWithoutACommonBlockShowsNoFigure) {
+  const auto conditions = conditions_of(Finding(), "not_compared", EquipmentConfig());
+  EXPECT_EQ(conditions.at(0).found, "no block yet");
+  EXPECT_EQ(conditions.at(0).holds, false);
+  EXPECT_EQ(conditions.at(1).holds, std::nullopt);
+}
+
 TEST(Conditions, AVersionThatAskedAnOperatorLeavesAFullLeagueWithThatQuestionOpen) {
   Finding finding;
   finding.log_threshold = 4;
