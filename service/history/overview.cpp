@@ -78,12 +78,9 @@ void read_champion(const Registry& registry, const storage::Decision& made, cons
                    OverviewRow& row) {
   row.champion = made.version;
   row.since = made.time;
-  row.approved_error_percent = percent_in(made.evidence_json, "mrse_percent");
+  row.approved_error_percent = error_when_approved(registry, made);
   const auto version = registry.version(row.name.spacecraft, row.name.equipment, made.version);
   if (!version) return;
-  if (!row.approved_error_percent)
-    if (const auto attempt = registry.attempt(version->attempt))
-      row.approved_error_percent = percent_in(attempt->evidence_json, "mrse_percent");
   storage::Time record = version->window.end;
   try {
     record = equipment_model_from_json(version->model_json).validated_on.begin;
@@ -110,6 +107,16 @@ OverviewRow row_of_equipment(const Registry& registry, const EquipmentName& name
 }
 
 }  // namespace
+
+std::optional<double> error_when_approved(const Registry& registry, const storage::Decision& made) {
+  const auto decisions = registry.decisions(made.spacecraft, made.equipment, made.version);
+  for (auto one = decisions.rbegin(); one != decisions.rend(); ++one)
+    if (one->id <= made.id)
+      if (const auto error = percent_in(one->evidence_json, "mrse_percent")) return error;
+  const auto version = registry.version(made.spacecraft, made.equipment, made.version);
+  const auto attempt = version ? registry.attempt(version->attempt) : std::nullopt;
+  return attempt ? percent_in(attempt->evidence_json, "mrse_percent") : std::nullopt;
+}
 
 std::vector<OverviewRow> overview(storage::Database& database) {
   const storage::Snapshot snapshot(database);

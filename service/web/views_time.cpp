@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "service/history/overview.hpp"
 #include "service/history/summary.hpp"
 #include "service/judgement/scores.hpp"
-#include "service/review/evidence.hpp"
 #include "service/review/model_run.hpp"
 #include "service/review/stored_version.hpp"
 #include "service/web/disbelieved.hpp"
@@ -111,7 +111,7 @@ Json gaps_value(const std::vector<TimeRange>& gaps, Time begin) {
 }
 
 struct Reign {
-  std::int64_t version = 0;
+  storage::Decision made;
   TimeRange range;
 };
 
@@ -125,10 +125,10 @@ std::vector<Reign> reigns_of(const Stored& stored, const EquipmentName& name, Ti
     using Kind = storage::DecisionKind;
     const bool begins = decision.kind == Kind::approve || decision.kind == Kind::roll_back;
     const bool ends = decision.kind == Kind::withdraw && !reigns.empty() &&
-                      reigns.back().version == decision.version;
+                      reigns.back().made.version == decision.version;
     if (!reigns.empty() && (begins || ends) && reigns.back().range.end == INT64_MAX)
       reigns.back().range.end = place;
-    if (begins) reigns.push_back({decision.version, {place, INT64_MAX}});
+    if (begins) reigns.push_back({decision, {place, INT64_MAX}});
     if (place < range.begin || place >= range.end || decision.kind == Kind::wait) continue;
     events.push_back({{"at_s", seconds(place, range.begin)},
                       {"time", time_value(decision.time)},
@@ -163,7 +163,7 @@ Json record_in(const Stored& stored, const EquipmentName& name, const Reign& rei
                const std::vector<storage::Block>& blocks, const storage::TimeBins& bins) {
   const Time begin = bins.range().begin;
   const std::vector<storage::BlockScore> scores = stored.registry.scores(
-      name.spacecraft, name.equipment, reign.version, std::max(reign.range.begin, begin));
+      name.spacecraft, name.equipment, reign.made.version, std::max(reign.range.begin, begin));
   using Scored = std::pair<const storage::Block*, const storage::BlockScore*>;
   std::vector<Scored> scored;
   const Time end = std::min(reign.range.end, bins.range().end);
@@ -195,7 +195,7 @@ Json record_in(const Stored& stored, const EquipmentName& name, const Reign& rei
                                                         : Json());
     i = next;
   }
-  return {{"version", id_value(reign.version)},
+  return {{"version", id_value(reign.made.version)},
           {"from_s", std::move(from)},
           {"to_s", std::move(to)},
           {"error_percent", std::move(error)},
@@ -212,14 +212,13 @@ Json timeline_view(const Stored& stored, const HttpRequest& request) {
   const auto reigns = reigns_of(stored, name, range, events);
   const auto blocks = stored.registry.blocks(name.spacecraft, name.equipment, range.begin);
   for (const Reign& reign : reigns) {
-    const auto attempt = stored.history.attempt(name, reign.version);
+    const auto error = history::error_when_approved(stored.registry, reign.made);
     const Time begin = std::max(reign.range.begin, range.begin);
     const Time end = std::min(reign.range.end, range.end);
-    champions.push_back({{"version", id_value(reign.version)},
+    champions.push_back({{"version", id_value(reign.made.version)},
                          {"begin_s", seconds(begin, range.begin)},
                          {"end_s", seconds(end, range.begin)},
-                         {"approved_error_percent",
-                          attempt ? evidence_of(*attempt).value("mrse_percent", Json()) : Json()}});
+                         {"approved_error_percent", error ? Json(*error) : Json()}});
     records.push_back(record_in(stored, name, reign, blocks, bins));
     stored.check_time();
   }

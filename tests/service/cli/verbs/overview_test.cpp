@@ -173,6 +173,16 @@ TEST_F(Overview, FitsIntoEightyColumns) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(display_width(line), 80U) << line;
 }
 
+TEST_F(Overview, TheErrorOfAnApprovalByHandIsThatOfTheRecordThatSpokeForIt) {
+  version("BDR", DecisionKind::wait);
+  registry_.decide("SAT", "BDR", 1,
+                   {DecisionKind::wait, "gate", "Ask an operator.", R"({"mrse_percent":4.5})"},
+                   start + 90 * minute);
+  registry_.decide("SAT", "BDR", 1, {DecisionKind::approve, "Ana Souza", "seen", ""},
+                   start + 95 * minute);
+  EXPECT_EQ(overview(0)["equipment"][0]["approved_mrse_percent"], 4.5);
+}
+
 TEST_F(Overview, OfAHundredEquipmentAndManyRecordsIsThereAtOnce) {
   for (int i = 0; i < 100; ++i) {
     const std::string name = "EQ" + std::to_string(100 + i);
