@@ -97,6 +97,8 @@ std::optional<Asked> execute_on_file(const Target& target, const Command& comman
   } catch (const storage::Error& failure) {
     why = failure.what();
     using Kind = storage::Error::Kind;
+    // Who holds it is the service that is to answer: it must not be stopped.
+    if (failure.kind() == Kind::locked) why = why.substr(0, why.find("; "));
     if (failure.kind() == Kind::locked || failure.kind() == Kind::read_only) return std::nullopt;
     if (failure.kind() == Kind::cannot_open || failure.kind() == Kind::newer_schema)
       return Refusal{why};
