@@ -71,12 +71,9 @@ std::optional<Series> without_linear(const Vector& bend, const Series& input) {
 
 }  // namespace
 
-std::vector<InputCorrelation> bends(const StateSpaceModel& model, const Record& record,
-                                    RowRange run, RowRange scored,
-                                    const std::optional<Vector>& x0) {
+std::vector<InputCorrelation> bends(const Record& record, RowRange scored, const Matrix& y_hat) {
   const Scored part = scored_part(record, scored);
-  std::vector<Series> residuals = residuals_of(
-      part, free_run(model, record, run, x0).middleRows(scored.begin - run.begin, scored.size()));
+  std::vector<Series> residuals = residuals_of(part, y_hat);
   std::vector<InputCorrelation> result;
   for (std::size_t q = 0; q < residuals.size(); ++q)
     for (std::size_t j = 0; j < part.inputs.size(); ++j) {

@@ -66,9 +66,8 @@ Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRang
 /// Returns, by outputs, then inputs, the correlation of the free run's residuals with what an input
 /// does about its mean that is not linear in it: its square, or its product with its size,
 /// whichever is larger. An equipment that saturates, has a dead zone or answers a square shows it.
-/// Inputs of two values have none: with those no lags are looked at. Requires what diagnose() does.
-std::vector<InputCorrelation> bends(const StateSpaceModel& model, const Record& record,
-                                    RowRange run, RowRange scored,
-                                    const std::optional<Vector>& x0 = std::nullopt);
+/// Inputs of two values have none: with those no lags are looked at. `y_hat` (N x p) is the free
+/// run over the rows `scored`.
+std::vector<InputCorrelation> bends(const Record& record, RowRange scored, const Matrix& y_hat);
 
 }  // namespace reident::identification

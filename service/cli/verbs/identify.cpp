@@ -148,8 +148,6 @@ void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
         segments, identification::state_rows));
 }
 
-/// One simulation from x0 at the first identification row to the last row of both ranges; rows
-/// before the identification need another.
 void warn_of_bends(const std::vector<identification::InputCorrelation>& bends,
                    IdentifyOutcome& outcome) {
   constexpr double worth_a_word = 0.4;  // a sixth of what is left
@@ -165,7 +163,7 @@ void warn_of_bends(const std::vector<identification::InputCorrelation>& bends,
           outcome.outputs[static_cast<std::size_t>(output)]));
 }
 
-/// Of the residuals over `rows`.
+/// `y_hat` is the free run over `rows`.
 void warn_of_shifts(const IdentifyData& data, RowRange rows, const identification::Matrix& y_hat,
                     IdentifyOutcome& outcome) {
   std::vector<RowRange> segments;
@@ -187,6 +185,8 @@ void warn_of_shifts(const IdentifyData& data, RowRange rows, const identificatio
   }
 }
 
+/// One simulation from x0 at the first identification row to the last row of both ranges; rows
+/// before the identification need another.
 void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
   const Identified& identified = outcome.identified;
   const bool before = data.validate.begin < data.identify.begin;
@@ -196,11 +196,17 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
   outcome.identify =
       score_free_run(identified.model, data.record, run, data.identify, identified.x0);
   if (before) warn_of_states(data, data.validate, false, outcome.warnings);
-  const RowRange scored_run = before ? data.validate : run;
-  const auto x0 = before ? std::nullopt : std::optional(identified.x0);
-  outcome.diagnostics = diagnose(identified.model, data.record, scored_run, data.validate, x0);
-  warn_of_bends(bends(identified.model, data.record, scored_run, data.validate, x0), outcome);
-  warn_of_shifts(data, run, free_run(identified.model, data.record, run, identified.x0), outcome);
+  outcome.diagnostics =
+      before ? diagnose(identified.model, data.record, data.validate, data.validate)
+             : diagnose(identified.model, data.record, run, data.validate, identified.x0);
+  const identification::Matrix y_hat = free_run(identified.model, data.record, run, identified.x0);
+  const RowRange validate = data.validate;
+  warn_of_bends(
+      bends(data.record, validate,
+            before ? free_run(identified.model, data.record, validate)
+                   : y_hat.middleRows(validate.begin - run.begin, validate.size()).eval()),
+      outcome);
+  warn_of_shifts(data, run, y_hat, outcome);
 }
 
 int print_rejection(const Verdict& verdict, const Arguments& arguments, const IdentifyData& data) {

@@ -62,10 +62,11 @@ void print_table(const std::vector<Waiting>& list) {
       if (!verdict.now) return evidence_number(then, key);
       return verdict.now->blocks > 0 ? fmt::format("{:.4g}", (*verdict.now).*figure) : "-";
     };
+    const bool has_rival = verdict.now || then.contains("champion");  // a first version has none
     table.add({fmt::format("{}@{}", full_name(name_of(row)), row.decision.version),
                rough_duration_text(now - row.decision.time),
                error("mrse_percent", &Finding::mrse_percent),
-               error("champion_mrse_percent", &Finding::champion_mrse_percent),
+               has_rival ? error("champion_mrse_percent", &Finding::champion_mrse_percent) : "-",
                numbers_text(row.supersedes), verdict.sentence});
   }
   fmt::print("{}", table.text(terminal_width()));

@@ -51,7 +51,7 @@ TEST(Offset, AConstantExplainsTheMean) {
 }
 
 TEST(Offset, TheOutputWhoseErrorItExplainsMostSaysHowLargeItIs) {
-  // Of the first output's error an offset of 1 explains a hundredth, of the second's one of 4 all.
+  // An offset of 1 explains a hundredth of the first output's error, one of 4 all of the second's.
   BlockScore two = score(0, 100, {5, 1, -1, 1, -4});
   two.mean = {0, 0};
   two.square = {100, 16};
