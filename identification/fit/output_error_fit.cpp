@@ -175,10 +175,10 @@ Fitted refined(const StateSpaceModel& dynamics, bool direct, const Target& targe
 }  // namespace
 
 Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
-                      RowRange rows, Accuracy accuracy) {
+                      RowRange rows, Accuracy accuracy, const std::vector<ErrorColour>& colours) {
   const std::vector<Segment> segments = segments_within(record, rows);
   return response_of(
-      fit(with_dynamics(A, C, record), direct, {record, segments, unknown}, accuracy), rows.size());
+      fit(with_dynamics(A, C, record), direct, {record, segments, colours}, accuracy), rows.size());
 }
 
 Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowRange rows) {

@@ -23,9 +23,11 @@ struct Response {
 enum class Accuracy { fast, exact };
 
 /// Fits B, D, y0 and the initial states for A (n x n) and C (p x n) to `rows`; of least norm where
-/// the rows do not determine them. Without `direct` D is zero. Requires a stable A.
+/// the rows do not determine them. Without `direct` D is zero. Requires a stable A. Where the
+/// `colours` of the outputs' errors are given, `error` is that of the errors made white.
 Response fit_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
-                      RowRange rows, Accuracy accuracy);
+                      RowRange rows, Accuracy accuracy,
+                      const std::vector<ErrorColour>& colours = {});
 
 /// Fits like fit_response(), with D, where the outputs are what a known model leaves of them. The
 /// solution is that of least squares where the rows determine it with confidence, and near zero

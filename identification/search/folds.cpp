@@ -19,8 +19,13 @@ double rms(const Matrix& errors) {
 }
 
 HeldOutError error_of(const Matrix& errors) {
+  constexpr double least_error = 1e-6;  // of an output's deviation: below it errors are rounding
   HeldOutError result{rms(errors), {}};
   if (!std::isfinite(result.rms)) return {std::numeric_limits<double>::infinity(), {}};
+  result.log_rms = (errors.colwise().norm().array() / std::sqrt(double(errors.rows())))
+                       .max(least_error)
+                       .log()
+                       .mean();
   for (std::size_t i = 0; i < error_blocks; ++i) {
     const auto row = [&](std::size_t k) {
       return static_cast<Index>(k) * errors.rows() / static_cast<Index>(error_blocks);

@@ -33,11 +33,12 @@ std::vector<Fold> folds_of(Index rows, double tune_share);
 inline constexpr std::size_t error_blocks = 10;
 
 /// What a model errs on the rows held out: mean over outputs of the root mean square over rows,
-/// infinite for a model that does not stay finite, and sums of squares of as many parts of the
-/// rows.
+/// infinite for a model that does not stay finite, sums of squares of as many parts of the rows,
+/// and the mean over outputs of the logarithm of the root mean square.
 struct HeldOutError {
   double rms = 0;
   std::array<double, error_blocks> squares{};
+  double log_rms = 0;
 };
 
 /// `recent` is that of the model whose operating point is moved to that of the fitted rows nearest

@@ -41,11 +41,15 @@ Response refined(const Dynamics& dynamics, const Recipe& recipe, const Record& r
     return refine_response(from.A, from.C, recipe.direct, record, rows, recipe.refinement_steps,
                            recipe.least_rate);
   };
-  const Response all = refine(dynamics);
-  if (recipe.eliminated_from == 0) return all;
-  const auto fewer =
-      fewer_modes({all.model.A, all.model.C}, recipe.direct, record, rows, recipe.order);
-  return fewer.empty() ? all : refine(fewer.back().dynamics);
+  Response result = refine(dynamics);
+  if (recipe.eliminated_from > 0) {
+    const auto fewer =
+        fewer_modes({result.model.A, result.model.C}, recipe.direct, record, rows, recipe.order);
+    if (!fewer.empty()) result = refine(fewer.back().dynamics);
+  }
+  if (!recipe.whitened) return result;
+  return refine_whitened(result, recipe.direct, record, rows, recipe.refinement_steps,
+                         colours_of(result, record, rows), recipe.least_rate);
 }
 
 }  // namespace reident::identification

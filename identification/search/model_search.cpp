@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "identification/fit/output_error_fit.hpp"
+#include "identification/search/candidates.hpp"
 #include "identification/search/mode_elimination.hpp"
 #include "identification/search/parsimony.hpp"
 #include "identification/simulation/initial_state.hpp"
@@ -19,9 +18,6 @@
 namespace reident::identification {
 namespace {
 
-constexpr double equal_errors = 1.002;
-constexpr double no_error = 1e-6;  // of an output's deviation
-constexpr double worthwhile_recency = 0.95;
 constexpr double foretold = 0.5;  // of the error without slow modes
 constexpr int refinement_steps = 25;
 constexpr Index least_scored = 1000,
@@ -35,56 +31,6 @@ const HeldOutErrors no_model{{std::numeric_limits<double>::infinity(), {}},
 /// Multiply-adds of a run of one row.
 double work_of_run(Index n, Index m, Index p) {
   return double((n + p) * (n + m));
-}
-
-/// A recipe and what became of it on each fold.
-struct Candidate {
-  std::size_t place = 0;  // of its A and C among those of the first stage
-  Recipe recipe;
-  double error = 0;                         // mean over the folds
-  std::vector<HeldOutError> fold_errors{};  // with the operating point that was taken
-};
-
-/// Takes the operating point that the folds speak for. False where a fold had no stable model.
-bool take_errors(Candidate& candidate, const std::vector<HeldOutErrors>& errors) {
-  double whole = 0, recent = 0;
-  for (const HeldOutErrors& of_fold : errors) {
-    whole += of_fold.whole.rms / double(errors.size());
-    recent += of_fold.recent.rms / double(errors.size());
-  }
-  if (!std::isfinite(whole)) return false;
-  const bool is_recent = recent < worthwhile_recency * whole;
-  candidate.recipe.operating_point = is_recent ? OperatingPoint::recent : OperatingPoint::whole;
-  candidate.error = is_recent ? recent : whole;
-  candidate.fold_errors.clear();
-  for (const HeldOutErrors& of_fold : errors)
-    candidate.fold_errors.push_back(is_recent ? of_fold.recent : of_fold.whole);
-  return true;
-}
-
-/// Best first by the rule of the header.
-void rank(std::vector<Candidate>& candidates) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : candidates) best = std::min(best, candidate.error);
-  const auto key = [best](const Candidate& candidate) {
-    const bool equal = candidate.error <= std::max(equal_errors * best, no_error);
-    return std::tuple(!equal, equal ? candidate.recipe.order : 0, candidate.error);
-  };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [&key](const auto& a, const auto& b) { return key(a) < key(b); });
-}
-
-/// The best of each order, then the second of each, and so on: the first stage ranks by little
-/// of the rows, and candidates of one order that stand beside each other are often the same model.
-std::vector<Candidate> by_turns(const std::vector<Candidate>& ranked) {
-  std::map<int, int> of_order;
-  std::vector<std::pair<int, std::size_t>> turns;
-  for (std::size_t i = 0; i < ranked.size(); ++i)
-    turns.emplace_back(of_order[ranked[i].recipe.order]++, i);
-  std::sort(turns.begin(), turns.end());
-  std::vector<Candidate> result;
-  for (const auto& [turn, place] : turns) result.push_back(ranked[place]);
-  return result;
 }
 
 class Search {
@@ -116,6 +62,8 @@ class Search {
   /// The candidate of the lowest order that nothing speaks against beside the winner.
   std::optional<Candidate> simplest(const Candidate& winner,
                                     const std::vector<Candidate>& compressed);
+  /// The winner fitted to white errors, where it errs less so.
+  std::optional<Candidate> whitened(const Candidate& winner);
   Response fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const;
   bool has_order_zero() const {
     return space_.min_order == 0 && m_ > 0 && space_.direct.front() &&
@@ -449,6 +397,22 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
   return best;
 }
 
+std::optional<Candidate> Search::whitened(const Candidate& winner) {
+  if (winner.recipe.order == 0 || winner.recipe.fit != ResponseFit::simulation ||
+      winner.error <= no_error)
+    return std::nullopt;
+  Candidate white = winner;
+  white.recipe.whitened = true;
+  white.recipe.refinement_steps = refinement_steps;
+  const Index rows = affordable_rows_of_fold(white.recipe, 1);
+  white.recipe.refined_rows = rows * static_cast<Index>(folds());
+  const std::vector<Candidate> found = scored({white}, rows);
+  if (found.empty() || found.front().error > equal_errors * winner.error ||
+      found.front().log_error() >= winner.log_error())
+    return std::nullopt;
+  return found.front();
+}
+
 std::vector<ScoredRecipe> Search::run() {
   std::vector<Candidate> compressed = compressed_stage();
   if (least_rate_ > 0 && (compressed.empty() || shows_slow_modes(compressed))) {
@@ -467,6 +431,8 @@ std::vector<ScoredRecipe> Search::run() {
   }
   if (!found.empty())
     if (auto simple = simplest(found.front(), compressed)) found.insert(found.begin(), *simple);
+  if (!found.empty())
+    if (auto white = whitened(found.front())) found.insert(found.begin(), *white);
   std::vector<ScoredRecipe> result;
   for (const Candidate& candidate : found) result.push_back({candidate.recipe, candidate.error});
   return result;

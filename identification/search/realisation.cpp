@@ -24,11 +24,13 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
   const auto last = [fitted = rows.fitted().size()](Index count) {
     return RowRange{std::max<Index>(0, fitted - count), fitted};
   };
+  std::vector<ErrorColour> colours;
   if (recipe.refinement_steps > 0) {
-    StateSpaceModel model =
-        refined({A, C}, recipe, rows.normalised(), last(recipe.refined_rows)).model;
-    A = std::move(model.A);
-    C = std::move(model.C);
+    const RowRange refined_rows = last(recipe.refined_rows);
+    Response response = refined({A, C}, recipe, rows.normalised(), refined_rows);
+    if (recipe.whitened) colours = colours_of(response, rows.normalised(), refined_rows);
+    A = std::move(response.model.A);
+    C = std::move(response.model.C);
   }
   if (recipe.fit == ResponseFit::subspace)
     return with_response(projection, A, C, recipe.direct, rows.record().period_s);
@@ -37,7 +39,8 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
   unrefined.refinement_steps = 0;
   const Index affordable =
       affordable_rows(unrefined, rows.inputs(), rows.outputs(), rows.options().search_budget / 3);
-  return fit_response(A, C, recipe.direct, rows.normalised(), last(affordable), Accuracy::exact)
+  return fit_response(A, C, recipe.direct, rows.normalised(), last(affordable), Accuracy::exact,
+                      colours)
       .model;
 }
 

@@ -102,6 +102,38 @@ TEST(Identify, WithNoiseTheErrorFallsWithTheRows) {
   EXPECT_LT(fine, coarse);
 }
 
+/// The first output's part of a model.
+StateSpaceModel of_first_output(StateSpaceModel model) {
+  model.C = model.C.topRows(1).eval();
+  model.D = model.D.topRows(1).eval();
+  model.y0 = model.y0.head(1).eval();
+  return model;
+}
+
+TEST(Identify, ANoisyOutputDoesNotSpoilAQuietOneBesideIt) {
+  constexpr int records = 10;
+  double lost = 0;
+  for (std::uint64_t seed = 1; seed <= records; ++seed) {
+    test::Noise noise(seed);
+    const StateSpaceModel truth = test::random_system(noise, 2, 2, 2);
+    const Record exact = test::excited(truth, noise, 600, 0);
+    const Matrix chance = noise.normal(600, 2);
+    const auto error_beside = [&](double noise_share) {
+      Record record = exact;
+      for (Index q = 0; q < 2; ++q) {
+        const double deviation =
+            std::sqrt((exact.y.col(q).array() - exact.y.col(q).mean()).square().mean());
+        record.y.col(q) += (q == 0 ? 0.005 : noise_share) * deviation * chance.col(q);
+      }
+      return test::markov_distance(of_first_output(expect_model(record, record.all()).model),
+                                   of_first_output(truth));
+    };
+    lost += std::log(error_beside(0.5) / error_beside(0.005));
+  }
+  EXPECT_LT(std::exp(lost / records), 1.7);
+  RecordProperty("lost", std::to_string(std::exp(lost / records)));
+}
+
 TEST(Identify, ReadsNothingOutsideTheRowsAsked) {
   test::Noise noise(13);
   const StateSpaceModel truth = test::random_system(noise, 2, 1, 1);
