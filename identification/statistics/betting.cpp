@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace reident::identification {
 namespace {
@@ -14,10 +15,6 @@ constexpr std::array bets = {1.0, 0.5, 0.25, 0.125, 0.0625};
 constexpr Index least_means = 6;
 /// Scores that differ by less, over their bound, are equal but for rounding.
 constexpr double rounding = 1e-9;
-
-double variance(const Vector& values) {
-  return (values.array() - values.mean()).square().sum() / double(values.size() - 1);
-}
 
 /// Variance of the mean of `length` successive scores, from all such means: those that overlap too,
 /// so that it does not depend on where the first one begins. The scores' own mean is taken for the
@@ -48,32 +45,31 @@ double sum_of_logs(const Vector& scores, double mean, double factor) {
 
 }  // namespace
 
-double dependence(const ScoreSeries& series) {
-  const Index n = series.scores.size();
-  const double measured = std::min(1.0, double(n) / double(cycles_to_measure * series.cycle));
-  double largest = 1;
-  if (series.assumed == 0)
-    largest = measured + (1 - measured) * double(series.cycle);
+Bet::Bet(ScoreSeries series) : series_(std::move(series)) {
+  const Vector& scores = series_.scores;
+  const Index n = scores.size();
+  const double measured = std::min(1.0, double(n) / double(cycles_to_measure * series_.cycle));
+  if (series_.assumed == 0)
+    dependence_ = measured + (1 - measured) * double(series_.cycle);
   else if (measured < 1)
-    largest = series.assumed;
-  if (n < 2) return largest;
-  const double of_one = variance(series.scores);
-  if (!(of_one > rounding * rounding * series.bound * series.bound)) return largest;
+    dependence_ = series_.assumed;
+  if (n < 2) return;
+  const double of_one = (scores.array() - scores.mean()).square().sum() / double(n - 1);
+  if (!(of_one > rounding * rounding * series_.bound * series_.bound)) return;
   for (Index length = 2; n / length >= least_means; length *= 2) {
     // By a standard deviation more, of 3/2 as many independent means as fit in: the ratio of so
     // few is uncertain.
     const double uncertain = 1 + std::sqrt(2.0 / (1.5 * double(n) / double(length) - 1));
-    largest = std::max(
-        largest, double(length) * variance_of_means(series.scores, length) / of_one * uncertain);
+    dependence_ = std::max(dependence_,
+                           double(length) * variance_of_means(scores, length) / of_one * uncertain);
   }
-  return largest;
 }
 
-double log_wealth(const ScoreSeries& series, double dependence, double mean) {
-  assert(std::abs(mean) < series.bound);
+double Bet::log_wealth(double mean) const {
+  assert(std::abs(mean) < series_.bound);
   std::array<double, bets.size()> logs{};
   for (std::size_t i = 0; i < bets.size(); ++i)
-    logs[i] = sum_of_logs(series.scores, mean, bets[i] / (series.bound + mean)) / dependence;
+    logs[i] = sum_of_logs(series_.scores, mean, bets[i] / (series_.bound + mean)) / dependence_;
   const double largest = *std::max_element(logs.begin(), logs.end());
   if (!std::isfinite(largest)) return largest;
   double wealth = 0, all = 0;
@@ -84,13 +80,13 @@ double log_wealth(const ScoreSeries& series, double dependence, double mean) {
   return largest + std::log(wealth / all);
 }
 
-double lower_mean(const ScoreSeries& series, double dependence, double log_threshold) {
-  double low = -series.bound, high = series.scores.size() > 0 ? series.scores.mean() : low;
+double Bet::lower_mean(double log_threshold) const {
+  double low = -series_.bound, high = series_.scores.size() > 0 ? series_.scores.mean() : low;
   constexpr int halvings = 40;
   for (int i = 0; i < halvings && low < high; ++i) {
     const double middle = (low + high) / 2;
-    if (!(middle > -series.bound)) break;
-    (log_wealth(series, dependence, middle) > log_threshold ? low : high) = middle;
+    if (!(middle > -series_.bound)) break;
+    (log_wealth(middle) > log_threshold ? low : high) = middle;
   }
   return low;
 }

@@ -22,17 +22,30 @@ struct ScoreSeries {
   double assumed = 0;
 };
 
-/// Returns by how many times the variance of a mean of the scores exceeds that of as many
-/// independent ones, at least 1: the largest ratio that means of 2, 4, 8 ... scores show.
-double dependence(const ScoreSeries& series);
+/// Someone who bets on a series of scores, that their mean is above a value.
+class Bet {
+ public:
+  explicit Bet(ScoreSeries series);
 
-/// Returns the logarithm of the wealth of one who bets that the mean of the scores is above `mean`
-/// in (-bound, bound). Where it is not, the wealth ever exceeds w with a probability of at most
-/// 1 / w. Dependent scores count as 1 / dependence() each. 0 without scores.
-double log_wealth(const ScoreSeries& series, double dependence, double mean);
+  const Vector& scores() const { return series_.scores; }
 
-/// Returns the lower end of the confidence sequence: the largest mean against which log_wealth()
-/// exceeds `log_threshold`; -bound where there is none.
-double lower_mean(const ScoreSeries& series, double dependence, double log_threshold);
+  /// Returns how many scores count as one, at least 1: by how many times the variance of a mean of
+  /// the scores exceeds that of as many independent ones, the largest ratio that means of 2, 4, 8
+  /// ... scores show.
+  double dependence() const { return dependence_; }
+
+  /// Returns the logarithm of the wealth of one who bets that the mean of the scores is above
+  /// `mean` in (-bound, bound). Where it is not, the wealth ever exceeds w with a probability of at
+  /// most 1 / w. Dependent scores count as 1 / dependence() each. 0 without scores.
+  double log_wealth(double mean = 0) const;
+
+  /// Returns the lower end of the confidence sequence: the largest mean against which log_wealth()
+  /// exceeds `log_threshold`; -bound where there is none.
+  double lower_mean(double log_threshold) const;
+
+ private:
+  ScoreSeries series_;
+  double dependence_ = 1;
+};
 
 }  // namespace reident::identification

@@ -53,7 +53,7 @@ void ErrorGrowth::measure_reference() {
   Vector left(n);
   for (Index i = 0; i < n; ++i) left(i) = scaled(record_[static_cast<std::size_t>(i)]);
   detector_.emplace(left, weights, phases_ + 1);
-  scale_ = 1 / std::sqrt(dependence({weights.cwiseProduct(left), 1, 1}));
+  scale_ = 1 / std::sqrt(Bet({weights.cwiseProduct(left), 1, 1}).dependence());
 }
 
 double ErrorGrowth::scaled(const BlockError& block) const {

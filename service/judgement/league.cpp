@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -13,7 +14,6 @@ namespace reident {
 namespace {
 
 using identification::InputRanges;
-using identification::ScoreSeries;
 using storage::Block;
 using storage::BlockScore;
 using storage::Time;
@@ -94,7 +94,7 @@ double Judge::usual_dependence(const League& league) {
   std::ranges::partial_sort(members, members.begin() + 2, {},
                             [](const Member* member) { return member->window.end; });
   return std::max(
-      dependence(series(comparison(league, *members[0], *members[1]).scores.values(), 0)),
+      bet_on(comparison(league, *members[0], *members[1]).scores.values(), 0).dependence(),
       dependence_before(league));
 }
 
@@ -110,7 +110,7 @@ double Judge::dependence_before(const League& league) {
       Comparison compared;
       extend(compared, league, member, *league.champion, change->before, change->since);
       if (compared.blocks.size() >= reference_blocks)
-        known->second = dependence(series(compared.scores.values(), 0));
+        known->second = bet_on(compared.scores.values(), 0).dependence();
     }
     largest = std::max(largest, known->second);
   }
@@ -182,9 +182,9 @@ std::vector<ComparedBlock> Judge::compared_blocks(const League& league, const Me
   std::vector<double> scores;
   for (std::size_t i = 0; i < compared.blocks.size(); ++i) {
     scores.push_back(compared.scores.values()[i]);
-    const ScoreSeries found = series(scores, assumed);
+    const identification::Bet bet = bet_on(scores, assumed);
     blocks.push_back({league.blocks[compared.blocks[i]].range.begin, scores.back(),
-                      found.scores.mean(), lower_mean(found, dependence(found), threshold)});
+                      bet.scores().mean(), bet.lower_mean(threshold)});
   }
   return blocks;
 }
@@ -197,15 +197,14 @@ std::optional<Reason> Judge::failure(const League& league) {
                                  const Comparison& compared) -> std::optional<Reason> {
     const double error = compared.one.mrse_percent(), theirs = compared.other.mrse_percent();
     if (error <= theirs) return std::nullopt;
-    ScoreSeries losses = series(compared.scores.values(), 0);
-    losses.scores = -losses.scores;
+    std::vector<double> losses = compared.scores.values();
+    std::ranges::transform(losses, losses.begin(), std::negate<>());
     // A few great errors make the bet no richer, yet the model is of no use.
     const bool is_plain = compared.blocks.size() >= reference_blocks &&
                           error * (1 - limits_->margin_percent / 100) > theirs;
-    if (!is_plain &&
-        !(log_wealth(losses, dependence(losses), 0) > -std::log(error_probability(*limits_))))
+    if (!is_plain && !(bet_on(losses, 0).log_wealth() > -std::log(error_probability(*limits_))))
       return std::nullopt;
-    return because<Code::champion_failed>(champion, error, losses.scores.size(), rival, theirs);
+    return because<Code::champion_failed>(champion, error, losses.size(), rival, theirs);
   };
   if (const Sums& own = compared_.own; !(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;

@@ -13,7 +13,7 @@
 namespace reident {
 namespace {
 
-using identification::ScoreSeries;
+using identification::Bet;
 using storage::BlockScore;
 using storage::Time;
 using Code = ReasonCode;
@@ -23,13 +23,13 @@ double less_by_margin(double mrse_percent, const EquipmentConfig& limits) {
 }
 
 /// Puts into `finding` what the scores say.
-void take_scores(const ScoreSeries& scores, Finding& finding) {
-  const auto recent = std::min<std::ptrdiff_t>(scores.scores.size(), 2 * blocks_of_cycle);
+void take_scores(const Bet& bet, Finding& finding) {
+  const auto recent = std::min<std::ptrdiff_t>(bet.scores().size(), 2 * blocks_of_cycle);
   if (recent == 0) return;
-  finding.dependence = dependence(scores);
-  finding.log_wealth = log_wealth(scores, finding.dependence, 0);
-  finding.mean_score = scores.scores.mean();
-  finding.recent_score = scores.scores.tail(recent).mean();
+  finding.dependence = bet.dependence();
+  finding.log_wealth = bet.log_wealth();
+  finding.mean_score = bet.scores().mean();
+  finding.recent_score = bet.scores().tail(recent).mean();
 }
 
 /// The member compared with the champion without what an offset, which is fitted to them, explains
@@ -70,8 +70,7 @@ bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
   const double rest = less_by_margin(1, standard.limits),
                least = (1 - rest * rest) / (1 + rest * rest);
   return std::any_of(losses.begin(), losses.end(), [&](const auto& of_regime) {
-    const ScoreSeries loss = series(of_regime.second, standard.assumed);
-    return lower_mean(loss, dependence(loss), threshold) > least;
+    return bet_on(of_regime.second, standard.assumed).lower_mean(threshold) > least;
   });
 }
 
@@ -110,8 +109,7 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
   const auto suspect = [&](const std::string& sensor, OffsetFit offset) {
     const Comparison rest = without(offset, league, member, compared);
-    const ScoreSeries scores = series(rest.scores.values(), standard.assumed);
-    const double wealth = log_wealth(scores, dependence(scores), 0),
+    const double wealth = bet_on(rest.scores.values(), standard.assumed).log_wealth(),
                  error = rest.other.mrse_percent();
     // Half of the gain, as a logarithm, or twice the version's error: what the offset explains may
     // be lost, and a version that has learnt it errs by it once the bias ends.
@@ -143,9 +141,9 @@ std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
 
 }  // namespace
 
-ScoreSeries series(const std::vector<double>& scores, double assumed) {
-  return {Eigen::Map<const identification::Vector>(scores.data(), std::ssize(scores)),
-          largest_score, blocks_of_cycle, assumed};
+Bet bet_on(const std::vector<double>& scores, double assumed) {
+  return Bet({Eigen::Map<const identification::Vector>(scores.data(), std::ssize(scores)),
+              largest_score, blocks_of_cycle, assumed});
 }
 
 double error_probability(const EquipmentConfig& limits) {
@@ -179,7 +177,7 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
   finding.mrse_percent = own.mrse_percent();
   finding.fit_percent = own.fit_percent();
   finding.baseline_mrse_percent = simulator.other.mrse_percent();
-  take_scores(series(simulator.scores.values(), 0), finding);
+  take_scores(bet_on(simulator.scores.values(), 0), finding);
   finding.recent_score = -finding.mrse_percent;
   const bool is_known = !simulator.blocks.empty();
   if (is_known) finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
@@ -209,8 +207,8 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
   finding.blocks = std::ssize(compared.blocks);
   finding.changed = standard.changed;
   finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
-  const ScoreSeries scores = series(compared.scores.values(), standard.assumed);
-  take_scores(scores, finding);
+  const Bet bet = bet_on(compared.scores.values(), standard.assumed);
+  take_scores(bet, finding);
   finding.mrse_percent = compared.one.mrse_percent();
   finding.fit_percent = compared.one.fit_percent();
   finding.champion_mrse_percent = compared.other.mrse_percent();
@@ -225,7 +223,7 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
     if (!(finding.mrse_percent < less_by_margin(finding.champion_mrse_percent, limits)))
       return because<Code::within_margin>(champion, limits.margin_percent, finding.mrse_percent,
                                           finding.champion_mrse_percent, finding.blocks);
-    finding.lower_score = lower_mean(scores, finding.dependence, finding.log_threshold);
+    finding.lower_score = bet.lower_mean(finding.log_threshold);
     if (auto reason = unproved_somewhere(standard, member, compared, finding)) return reason;
     if (auto reason = may_be_bias(standard, member, compared, finding)) return reason;
     return too_soon(standard, member);

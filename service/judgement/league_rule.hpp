@@ -26,8 +26,8 @@ void for_each_score(const League& league, const Member& member, storage::Time si
   }
 }
 
-/// The scores of blocks as a series whose dependence is at least `assumed`.
-identification::ScoreSeries series(const std::vector<double>& scores, double assumed);
+/// A bet on the scores of blocks, whose dependence is at least `assumed`.
+identification::Bet bet_on(const std::vector<double>& scores, double assumed);
 
 /// What the configured confidence leaves, from 0 to 1.
 double error_probability(const EquipmentConfig& limits);

@@ -92,8 +92,7 @@ void betting() {
   test::Noise noise(1);
   const identification::Vector scores = 0.3 * noise.normal(200, 1).cwiseMax(-3).cwiseMin(3);
   const Counted counted;
-  const identification::ScoreSeries series{scores, 1, 4, 0};
-  lower_mean(series, dependence(series), 3);
+  identification::Bet({scores, 1, 4, 0}).lower_mean(3);
 }
 
 void model_codec() {

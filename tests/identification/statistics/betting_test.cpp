@@ -21,31 +21,38 @@ ScoreSeries series(Vector scores) {
 }
 
 double wealth(const Vector& scores) {
-  const ScoreSeries all = series(scores);
-  return log_wealth(all, dependence(all), 0);
+  return Bet(series(scores)).log_wealth();
+}
+
+/// A bet on few scores that are taken for independent.
+Bet bet_on_independent(Vector scores) {
+  return Bet({std::move(scores), 1, cycle, 1});
 }
 
 TEST(Betting, WithoutScoresNothingIsWonOrLost) {
-  EXPECT_EQ(log_wealth(series(Vector()), 1, 0), 0);
-  EXPECT_EQ(lower_mean(series(Vector()), 1, 1), -1);
+  EXPECT_EQ(wealth(Vector()), 0);
+  EXPECT_EQ(Bet(series(Vector())).lower_mean(1), -1);
 }
 
 TEST(Betting, OneScoreOfOneDoublesTheLargestBet) {
   // The bets 1, 1/2, ... have shares of 16/31, 8/31, ...
   const double expected = std::log((16 * 2 + 8 * 1.5 + 4 * 1.25 + 2 * 1.125 + 1.0625) / 31);
-  EXPECT_NEAR(log_wealth(series(Vector::Ones(1)), 1, 0), expected, 1e-12);
+  EXPECT_NEAR(bet_on_independent(Vector::Ones(1)).log_wealth(), expected, 1e-12);
 }
 
 TEST(Betting, TheLargestBetIsLostWithAScoreOfMinusOneAndTheOthersAreNot) {
   Vector scores(2);
   scores << -1, 1;
   const double rest = (8 * 0.75 + 4 * 0.9375 + 2 * 0.984375 + 0.99609375) / 31;
-  EXPECT_NEAR(log_wealth(series(scores), 1, 0), std::log(rest), 1e-12);
+  EXPECT_NEAR(bet_on_independent(scores).log_wealth(), std::log(rest), 1e-12);
 }
 
 TEST(Betting, ScoresThatCountAsHalfGrowTheLogarithmHalfAsFast) {
-  const ScoreSeries scores = series(Vector::Constant(400, 0.5));
-  EXPECT_NEAR(log_wealth(scores, 2, 0) / log_wealth(scores, 1, 0), 0.5, 0.01);
+  const Vector scores = Vector::Constant(24, 0.5);
+  const auto wealth_where = [&](double assumed) {
+    return Bet({scores, 1, cycle, assumed}).log_wealth();
+  };
+  EXPECT_NEAR(wealth_where(2) / wealth_where(1), 0.5, 0.05);
 }
 
 TEST(Betting, TheLowerEndIsWhereTheWealthReachesTheThreshold) {
@@ -53,16 +60,16 @@ TEST(Betting, TheLowerEndIsWhereTheWealthReachesTheThreshold) {
   std::normal_distribution<> normal;
   Vector scores(60);
   for (double& score : scores) score = std::tanh(0.4 + 0.3 * normal(random));
-  const ScoreSeries all = series(scores);
-  const double low = lower_mean(all, 1.5, 3);
-  EXPECT_NEAR(log_wealth(all, 1.5, low), 3, 1e-6);
+  const Bet bet(series(scores));
+  const double low = bet.lower_mean(3);
+  EXPECT_NEAR(bet.log_wealth(low), 3, 1e-6);
   EXPECT_LT(low, scores.mean());
 }
 
 TEST(Betting, DependenceIsThatOfACycleUntilItWasMeasured) {
-  EXPECT_NEAR(dependence(series(Vector::Constant(1, 0.2))), 4 - 3.0 / 32, 1e-12);
-  EXPECT_NEAR(dependence(series(Vector::Constant(16, 0.2))), 2.5, 1e-12);
-  EXPECT_NEAR(dependence(series(Vector::Constant(32, 0.2))), 1, 1e-12);
+  EXPECT_NEAR(Bet(series(Vector::Constant(1, 0.2))).dependence(), 4 - 3.0 / 32, 1e-12);
+  EXPECT_NEAR(Bet(series(Vector::Constant(16, 0.2))).dependence(), 2.5, 1e-12);
+  EXPECT_NEAR(Bet(series(Vector::Constant(32, 0.2))).dependence(), 1, 1e-12);
 }
 
 TEST(Betting, DependenceOfScoresThatComeInPairsIsTwoAtLeast) {
@@ -71,8 +78,8 @@ TEST(Betting, DependenceOfScoresThatComeInPairsIsTwoAtLeast) {
   Vector scores(4000);
   for (Index i = 0; i < scores.size(); i += 2)
     scores(i) = scores(i + 1) = std::tanh(0.5 * normal(random));
-  EXPECT_GT(dependence(series(scores)), 2);
-  EXPECT_LT(dependence(series(scores)), 5);  // the largest ratio of many, and its uncertainty
+  EXPECT_GT(Bet(series(scores)).dependence(), 2);
+  EXPECT_LT(Bet(series(scores)).dependence(), 5);  // the largest ratio of many, and its uncertainty
 }
 
 TEST(Betting, DependenceDoesNotRestOnWhereTheMeansBegin) {
@@ -81,17 +88,17 @@ TEST(Betting, DependenceDoesNotRestOnWhereTheMeansBegin) {
   Vector scores(61);
   for (double& score : scores) score = std::tanh(0.5 * normal(random));
   for (Index n = 48; n < 60; ++n) {
-    const double now = dependence(series(scores.head(n)));
-    EXPECT_NEAR(dependence(series(scores.head(n + 1))) / now, 1, 0.15) << n;
+    const double now = Bet(series(scores.head(n))).dependence();
+    EXPECT_NEAR(Bet(series(scores.head(n + 1))).dependence() / now, 1, 0.15) << n;
   }
 }
 
 TEST(Betting, DependenceIsWhatIsAssumedUntilItWasMeasured) {
   ScoreSeries scores = series(Vector::Constant(31, 0.2));
   scores.assumed = 2.5;
-  EXPECT_EQ(dependence(scores), 2.5);
+  EXPECT_EQ(Bet(scores).dependence(), 2.5);
   scores.scores = Vector::Constant(32, 0.2);
-  EXPECT_EQ(dependence(scores), 1);
+  EXPECT_EQ(Bet(scores).dependence(), 1);
 }
 
 using Random = std::mt19937_64;
