@@ -41,6 +41,8 @@ struct Target {
 };
 
 const std::vector<ErrorColour> unknown;
+/// Errors below this are rounding, in deviations of an output.
+constexpr double least_error = 1e-6;
 
 template <typename Accumulator>
 Accumulator accumulate(const Columns& columns, const StateSpaceModel& model, const Target& target,
@@ -244,8 +246,17 @@ Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Re
       rows.size());
 }
 
+std::vector<ErrorColour> deviations_of(const Response& fit, const Record& record, RowRange rows) {
+  const Matrix errors =
+      record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+  std::vector<ErrorColour> colours;
+  for (Index q = 0; q < errors.cols(); ++q)
+    colours.push_back(
+        {{}, std::max(errors.col(q).norm() / std::sqrt(double(rows.size())), least_error)});
+  return colours;
+}
+
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows) {
-  constexpr double rounding = 1e-6;  // of an output's deviation
   const std::vector<RowRange> ranges = ranges_of(record, rows);
   const Matrix errors =
       record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
@@ -254,7 +265,7 @@ std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, R
     Series series(errors.col(q), ranges);
     const double deviation = series.centred().norm() / std::sqrt(double(rows.size()));
     const Autoregression past = autoregression(series);
-    colours.push_back({past, std::max(deviation * past.deviation.back(), rounding)});
+    colours.push_back({past, std::max(deviation * past.deviation.back(), least_error)});
   }
   return colours;
 }

@@ -50,6 +50,9 @@ Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Re
 /// Returns the colour of the errors of a fit to `rows`, one for each output.
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows);
 
+/// Returns what each output errs of a fit to `rows`, as colours of errors that are white.
+std::vector<ErrorColour> deviations_of(const Response& fit, const Record& record, RowRange rows);
+
 /// Refines a fit like refine_response(), where the errors have these colours: of the steps each
 /// lowers the sum of squares of the errors made white. `error` is that of these.
 Response refine_whitened(const Response& fit, bool direct, const Record& record, RowRange rows,

@@ -47,9 +47,9 @@ Response refined(const Dynamics& dynamics, const Recipe& recipe, const Record& r
         fewer_modes({result.model.A, result.model.C}, recipe.direct, record, rows, recipe.order);
     if (!fewer.empty()) result = refine(fewer.back().dynamics);
   }
-  if (!recipe.whitened) return result;
+  if (!recipe.weighted) return result;
   return refine_whitened(result, recipe.direct, record, rows, recipe.refinement_steps,
-                         colours_of(result, record, rows), recipe.least_rate);
+                         deviations_of(result, record, rows), recipe.least_rate);
 }
 
 }  // namespace reident::identification

@@ -62,8 +62,8 @@ class Search {
   /// The candidate of the lowest order that nothing speaks against beside the winner.
   std::optional<Candidate> simplest(const Candidate& winner,
                                     const std::vector<Candidate>& compressed);
-  /// The winner fitted to white errors, where it errs less so.
-  std::optional<Candidate> whitened(const Candidate& winner);
+  /// The winner with outputs that weigh by what they err, where it errs less so.
+  std::optional<Candidate> weighted(const Candidate& winner);
   Response fit_of(const Candidate& candidate, std::size_t fold, RowRange rows) const;
   bool has_order_zero() const {
     return space_.min_order == 0 && m_ > 0 && space_.direct.front() &&
@@ -397,16 +397,16 @@ std::optional<Candidate> Search::simplest(const Candidate& winner,
   return best;
 }
 
-std::optional<Candidate> Search::whitened(const Candidate& winner) {
-  if (winner.recipe.order == 0 || winner.recipe.fit != ResponseFit::simulation ||
+std::optional<Candidate> Search::weighted(const Candidate& winner) {
+  if (p_ == 1 || winner.recipe.order == 0 || winner.recipe.fit != ResponseFit::simulation ||
       winner.error <= no_error)
     return std::nullopt;
-  Candidate white = winner;
-  white.recipe.whitened = true;
-  white.recipe.refinement_steps = refinement_steps;
-  const Index rows = affordable_rows_of_fold(white.recipe, 1);
-  white.recipe.refined_rows = rows * static_cast<Index>(folds());
-  const std::vector<Candidate> found = scored({white}, rows);
+  Candidate other = winner;
+  other.recipe.weighted = true;
+  other.recipe.refinement_steps = refinement_steps;
+  const Index rows = affordable_rows_of_fold(other.recipe, 1);
+  other.recipe.refined_rows = rows * static_cast<Index>(folds());
+  const std::vector<Candidate> found = scored({other}, rows);
   if (found.empty() || found.front().error > equal_errors * winner.error ||
       found.front().log_error() >= winner.log_error())
     return std::nullopt;
@@ -432,7 +432,7 @@ std::vector<ScoredRecipe> Search::run() {
   if (!found.empty())
     if (auto simple = simplest(found.front(), compressed)) found.insert(found.begin(), *simple);
   if (!found.empty())
-    if (auto white = whitened(found.front())) found.insert(found.begin(), *white);
+    if (auto other = weighted(found.front())) found.insert(found.begin(), *other);
   std::vector<ScoredRecipe> result;
   for (const Candidate& candidate : found) result.push_back({candidate.recipe, candidate.error});
   return result;

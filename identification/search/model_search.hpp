@@ -64,8 +64,8 @@ Index affordable_rows(const Recipe& recipe, Index m, Index p, double work);
 /// Fits recipes on each fold and scores their free runs on the rows held out, in three stages:
 /// every order, horizon and weighting with B and D from the compression; the best of these with B
 /// and D either way; the best of these with A and C refined. A lower order against which nothing
-/// speaks (parsimony.hpp) takes the winner's place, and the fit to white errors where that errs
-/// less. Where the budget does not last for
+/// speaks (parsimony.hpp) takes the winner's place, and the one with outputs that weigh by what
+/// they err where that errs less. Where the budget does not last for
 /// all, fewer rows are fitted and scored, those next to the folds' edges, and then fewer recipes.
 /// Requires sums of at least 2 s block rows for every horizon s. Returns the recipes that are
 /// stable on every fold, best first by the rules of METHOD.md; empty where there is none. The

@@ -28,7 +28,7 @@ StateSpaceModel respond(PreparedRows& rows, const Recipe& recipe, const Projecti
   if (recipe.refinement_steps > 0) {
     const RowRange refined_rows = last(recipe.refined_rows);
     Response response = refined({A, C}, recipe, rows.normalised(), refined_rows);
-    if (recipe.whitened) colours = colours_of(response, rows.normalised(), refined_rows);
+    if (recipe.weighted) colours = deviations_of(response, rows.normalised(), refined_rows);
     A = std::move(response.model.A);
     C = std::move(response.model.C);
   }

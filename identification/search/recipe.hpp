@@ -35,9 +35,9 @@ struct Recipe {
   /// nearest to the end.
   int refinement_steps = 0;
   Index refined_rows = 0;
-  /// Whether the model is refined once more, and B, D and y0 are fitted, to errors that are made
-  /// white: a quiet output weighs more than a noisy one, and what comes fast more than a drift.
-  bool whitened = false;
+  /// Whether the model is refined once more, and B, D and y0 are fitted, with outputs that weigh by
+  /// what each of them errs: a quiet one more than a noisy one. Else they weigh by their deviation.
+  bool weighted = false;
   /// The order of the refined model of which so many modes are left, without those that the rows
   /// miss least; 0: none is taken out.
   int eliminated_from = 0;

@@ -63,7 +63,7 @@ ordered_json recipe_json(const identification::Identified& identified) {
                        {"operating_point", recent ? "recent" : "whole"},
                        {"refinement_steps", recipe.refinement_steps},
                        {"eliminated_from", recipe.eliminated_from},
-                       {"whitened", recipe.whitened},
+                       {"weighted", recipe.weighted},
                        {"stability", enforced ? "enforced" : "as_found"},
                        {"input_delays", identified.input_delays},
                        {"held_out_error", nullptr},

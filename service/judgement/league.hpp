@@ -70,6 +70,11 @@ struct Finding {
 /// The challenger that is to become champion; absent where none is.
 std::optional<Finding> successor(const std::vector<Finding>& findings);
 
+/// Whether the bet and the champion's `mrse` [%] are enough without what an offset explains (R3):
+/// half of the gain, as a logarithm, or twice the version's error. What the offset explains may be
+/// lost, and a version that has learnt it errs by it once the bias ends.
+bool leaves_enough(const Finding& finding, double log_wealth, double mrse);
+
 /// Whether R1 and R2 hold, so that it may become champion, or wait for an operator or for time.
 bool is_proved(const Finding& finding);
 

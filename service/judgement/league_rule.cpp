@@ -111,10 +111,7 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
     const Comparison rest = without(offset, league, member, compared);
     const double wealth = bet_on(rest.scores.values(), standard.assumed).log_wealth(),
                  error = rest.other.mrse_percent();
-    // Half of the gain, as a logarithm, or twice the version's error: what the offset explains may
-    // be lost, and a version that has learnt it errs by it once the bias ends.
-    if (!(wealth > finding.log_threshold &&
-          std::max(error / finding.champion_mrse_percent, most) * error > finding.mrse_percent))
+    if (!leaves_enough(finding, wealth, error))
       suspects += fmt::format("{}{} ({:.3g} too {})", suspects.empty() ? "" : ", ", sensor,
                               std::abs(offset.offset()), offset.offset() < 0 ? "low" : "high");
     finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
@@ -140,6 +137,11 @@ std::optional<Reason> too_soon(const Standard& standard, const Member& member) {
 }
 
 }  // namespace
+
+bool leaves_enough(const Finding& finding, double log_wealth, double mrse) {
+  return log_wealth > finding.log_threshold &&
+         std::max(mrse / finding.champion_mrse_percent, most) * mrse > finding.mrse_percent;
+}
 
 Bet bet_on(const std::vector<double>& scores, double assumed) {
   return Bet({Eigen::Map<const identification::Vector>(scores.data(), std::ssize(scores)),

@@ -10,14 +10,6 @@ using Eigen::ArrayXd;
 using storage::Block;
 using storage::BlockScore;
 
-namespace {
-
-Eigen::Map<const ArrayXd> array(const std::vector<double>& values) {
-  return {values.data(), std::ssize(values)};
-}
-
-}  // namespace
-
 std::size_t phase_of(const Block& block) {
   const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
   const storage::Time phase = block.range.begin / length % blocks_of_cycle;
@@ -61,6 +53,9 @@ double Scores::score(std::size_t q) const {
 }
 
 void Sums::add(const Block& block, const std::vector<double>& square, double weight) {
+  const auto array = [](const std::vector<double>& values) {
+    return Eigen::Map<const ArrayXd>(values.data(), std::ssize(values));
+  };
   if (error.size() == 0) error = y = y_square = ArrayXd::Zero(std::ssize(square));
   weight *= static_cast<double>(block.rows);
   error += weight * array(square);

@@ -44,9 +44,7 @@ bool is_offset_known(const Finding& finding) {
 /// Whether an offset explains too much (R3).
 bool is_offset(const Finding& finding) {
   const double error = finding.mrse_without_offset;
-  return error > 0 &&
-         !(finding.wealth_without_offset > finding.log_threshold &&
-           std::max(error / finding.champion_mrse_percent, most) * error > finding.mrse_percent);
+  return error > 0 && !leaves_enough(finding, finding.wealth_without_offset, error);
 }
 
 std::string offset(const Finding& finding) {

@@ -35,7 +35,7 @@ std::string method_text(const identification::Recipe& recipe) {
       fmt::format("{}, horizon {}, order {}", name(recipe.weighting), recipe.horizon, recipe.order);
   if (recipe.fit == identification::ResponseFit::subspace) text += ", B and D of the compression";
   if (recipe.refinement_steps > 0) text += ", refined";
-  if (recipe.whitened) text += " to white errors";
+  if (recipe.weighted) text += ", outputs by their errors";
   if (recipe.eliminated_from > 0) text += fmt::format(", left of order {}", recipe.eliminated_from);
   if (recipe.stability == identification::Stability::enforced) text += ", A made stable";
   return text;

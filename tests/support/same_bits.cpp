@@ -40,7 +40,7 @@ bool same(const Recipe& a, const Recipe& b) {
          a.stability == b.stability && a.fit == b.fit && a.direct == b.direct &&
          a.operating_point == b.operating_point && a.refinement_steps == b.refinement_steps &&
          a.refined_rows == b.refined_rows && a.eliminated_from == b.eliminated_from &&
-         a.whitened == b.whitened && a.least_rate == b.least_rate;
+         a.weighted == b.weighted && a.least_rate == b.least_rate;
 }
 
 bool same(const Identified& a, const Identified& b) {

@@ -130,7 +130,7 @@ TEST(Identify, ANoisyOutputDoesNotSpoilAQuietOneBesideIt) {
     };
     lost += std::log(error_beside(0.5) / error_beside(0.005));
   }
-  EXPECT_LT(std::exp(lost / records), 1.7);
+  EXPECT_LT(std::exp(lost / records), 1.4);
   RecordProperty("lost", std::to_string(std::exp(lost / records)));
 }
 
