@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "service/support/floor_divide.hpp"
 
@@ -68,11 +69,15 @@ void WindowScheduler::tried_elsewhere(std::size_t equipment, storage::TimeRange 
 
 std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
   std::optional<Job> best;
+  const auto turn = [this](std::size_t equipment, storage::Time end) {
+    return std::pair(equipment_[equipment].turn, end);
+  };
   for (std::size_t i = 0; i < equipment_.size(); ++i) {
     const Equipment& state = equipment_[i];
     if (state.running) continue;
     for (const auto& [end, due] : state.due) {
-      if (state.reached < end || (best && best->window.end <= end)) break;
+      if (state.reached < end || (best && turn(best->equipment, best->window.end) <= turn(i, end)))
+        break;
       if (now - due.touched < settle_) continue;
       best = Job{i, {due.begin.value_or(end - state.plan.window), end}, due.cause};
       break;
@@ -80,6 +85,7 @@ std::optional<WindowScheduler::Job> WindowScheduler::next(storage::Time now) {
   }
   if (best) {
     Equipment& state = equipment_[best->equipment];
+    state.turn = ++turns_;
     const auto due = state.due.find(best->window.end);
     state.running = Running{due->first, due->second.begin};
     state.due.erase(due);

@@ -10,7 +10,8 @@
 // and are due as soon as telemetry has reached it; one that has a begin of its own keeps it when
 // late telemetry falls into it, and settles as others do.
 // One window of an equipment runs at a time, the oldest due first, so that a candidate meets the
-// champion of the windows before it. A window that keeps receiving late telemetry holds nothing up.
+// champion of the windows before it. Equipment take turns: the backlog of one holds up no other. A
+// window that keeps receiving late telemetry holds nothing up.
 //
 // Not thread-safe; the clock, which never goes back, is the argument `now`.
 #pragma once
@@ -91,10 +92,12 @@ class WindowScheduler {
     std::map<storage::Time, Due> due{};
     std::map<storage::Time, Begin> tried{};
     std::optional<Running> running{};
+    std::uint64_t turn = 0;  // that it had last
   };
 
   std::vector<Equipment> equipment_;
   Duration settle_;
+  std::uint64_t turns_ = 0;
 };
 
 }  // namespace reident

@@ -61,6 +61,18 @@ storage::SeriesInfo series_of(const Stored& stored, const HttpRequest& request) 
                    404);
 }
 
+StoredVersion version_of(const Stored& stored, const storage::EquipmentName& equipment,
+                         const HttpRequest& request) {
+  const std::int64_t number = number_of(request, "version", 1, INT64_MAX, 0);
+  if (number == 0) throw BadRequest("name the version, as in version=3");
+  auto version = stored_version(stored.history, equipment, number);
+  if (!version)
+    throw BadRequest(fmt::format("{}/{} has no version {}; /api/v1/equipment lists those it has",
+                                 equipment.spacecraft, equipment.equipment, number),
+                     404);
+  return *std::move(version);
+}
+
 storage::TimeRange range_of(const HttpRequest& request, storage::TimeRange otherwise) {
   const storage::TimeRange range{time_of(request, "begin", otherwise.begin),
                                  time_of(request, "end", otherwise.end)};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "service/review/stored_version.hpp"
 #include "service/web/query_pool.hpp"
 #include "storage/types/time_bins.hpp"
 
@@ -16,6 +17,10 @@ storage::EquipmentName equipment_of(const Stored& stored, const HttpRequest& req
 
 /// Parameters `spacecraft`, `parameter` and `origin` (real where it is left out).
 storage::SeriesInfo series_of(const Stored& stored, const HttpRequest& request);
+
+/// Parameter `version`, of an equipment that is known.
+StoredVersion version_of(const Stored& stored, const storage::EquipmentName& equipment,
+                         const HttpRequest& request);
 
 /// Parameters `begin` and `end`; one that is left out is that of `otherwise`.
 storage::TimeRange range_of(const HttpRequest& request, storage::TimeRange otherwise);

@@ -7,7 +7,6 @@
 #include "service/history/summary.hpp"
 #include "service/judgement/scores.hpp"
 #include "service/review/model_run.hpp"
-#include "service/review/stored_version.hpp"
 #include "service/web/disbelieved.hpp"
 #include "service/web/questions.hpp"
 #include "service/web/views.hpp"
@@ -267,26 +266,22 @@ Json run_view(const Stored& stored, const HttpRequest& request) {
   const EquipmentName name = equipment_of(stored, request);
   const TimeRange range = range_of(request, extent_of(stored, name.spacecraft));
   const storage::TimeBins bins = bins_of(request, range);
-  const std::int64_t number = number_of(request, "version", 1, INT64_MAX, 0);
-  const auto story = number == 0 ? std::nullopt : stored_version(stored.history, name, number);
-  if (!story)
-    throw BadRequest(
-        fmt::format("{}/{} has no version {}", name.spacecraft, name.equipment, number), 404);
-  const Duration period = request_of(story->model).period;
+  const StoredVersion story = version_of(stored, name, request);
+  const Duration period = request_of(story.model).period;
   if (period <= 0 || (range.end - range.begin) / period > most_run_ticks)
     throw BadRequest(
         fmt::format("a free run is drawn over at most {} samples, here {:.1f} days; "
                     "ask for a shorter range, or look at the record",
                     most_run_ticks, static_cast<double>(most_run_ticks * period) / 86400e9));
-  const auto run = run_model(stored.telemetry, story->model, range, range.begin);
+  const auto run = run_model(stored.telemetry, story.model, range, range.begin);
   if (const auto* reason = std::get_if<std::string>(&run)) throw BadRequest(*reason, 404);
   const auto& done = std::get<ModelRun>(run);
   Json outputs = Json::array();
-  for (std::size_t i = 0; i < story->model.outputs.size(); ++i) {
+  for (std::size_t i = 0; i < story.model.outputs.size(); ++i) {
     const auto column = static_cast<identification::Index>(i);
     const auto& record = done.data.record;
-    outputs.push_back({{"name", story->model.outputs[i].name},
-                       {"unit", story->model.outputs[i].unit},
+    outputs.push_back({{"name", story.model.outputs[i].name},
+                       {"unit", story.model.outputs[i].unit},
                        {"run", column_in_bins(record, period, bins,
                                               [&](auto row) { return done.y_hat(row, column); })},
                        {"residual", column_in_bins(record, period, bins, [&](auto row) {
@@ -295,7 +290,7 @@ Json run_view(const Stored& stored, const HttpRequest& request) {
   }
   return {{"range", range_value(range)},
           {"bin_s", static_cast<double>(bins.length()) * 1e-9},
-          {"version", id_value(number)},
+          {"version", id_value(story.version.number)},
           {"mrse_percent", number_value(done.score.mrse())},
           {"outputs", std::move(outputs)}};
 }

@@ -68,48 +68,44 @@ Json signal_names_value(const std::vector<Signal>& signals) {
 
 Json version_view(const Stored& stored, const HttpRequest& request) {
   const storage::EquipmentName name = equipment_of(stored, request);
-  const std::int64_t number = number_of(request, "version", 1, INT64_MAX, 0);
-  const auto story = number == 0 ? std::nullopt : stored_version(stored.history, name, number);
-  if (!story)
-    throw BadRequest(fmt::format("{}/{} has no version {}; /api/v1/equipment lists those it has",
-                                 name.spacecraft, name.equipment, number),
-                     404);
-  const Verdict verdict = verdict_of(stored.history, *story);
+  const StoredVersion story = version_of(stored, name, request);
+  const Verdict verdict = verdict_of(stored.history, story);
   const auto champion = stored.history.champion_decision(name);
   Json view = name_value(name);
-  view["version"] = id_value(number);
-  view["status"] = story->version.status;
+  view["version"] = id_value(story.version.number);
+  view["status"] = story.version.status;
   view["asks_operator"] =
       std::ranges::any_of(stored.history.waiting(), [&](const history::WaitingRow& row) {
-        return row.decision.version == number && row.decision.equipment == name.equipment &&
+        return row.decision.version == story.version.number &&
+               row.decision.equipment == name.equipment &&
                row.decision.spacecraft == name.spacecraft;
       });
   view["champion"] = champion ? id_value(champion->version) : Json();
-  view["held"] = story->hold ? Json(story->hold->actor) : Json();
+  view["held"] = story.hold ? Json(story.hold->actor) : Json();
   view["verdict"] = verdict.sentence;
   view["conditions"] = conditions_value(verdict);
-  view["window"] = range_value(story->version.window);
-  view["identified_from"] = range_value(story->model.identified_from);
-  view["validated_on"] = range_value(story->model.validated_on);
-  view["trigger"] = story->attempt.trigger;
-  view["outcome"] = story->attempt.outcome;
-  view["reason"] = story->attempt.reason;
-  view["method"] = story->model.method;
-  view["order"] = story->model.dynamics.order();
-  view["sample_period_s"] = story->model.dynamics.period_s;
-  view["poles"] = poles_of(story->model.dynamics);
-  view["inputs"] = signal_names_value(story->model.inputs);
-  view["outputs"] = signal_names_value(story->model.outputs);
-  view["digest"] = story->version.digest;
-  view["digest_matches"] = story->digest_matches;
-  view["evidence"] = evidence_of(story->attempt);
-  view["record"] = record_value(stored, *story);
+  view["window"] = range_value(story.version.window);
+  view["identified_from"] = range_value(story.model.identified_from);
+  view["validated_on"] = range_value(story.model.validated_on);
+  view["trigger"] = story.attempt.trigger;
+  view["outcome"] = story.attempt.outcome;
+  view["reason"] = story.attempt.reason;
+  view["method"] = story.model.method;
+  view["order"] = story.model.dynamics.order();
+  view["sample_period_s"] = story.model.dynamics.period_s;
+  view["poles"] = poles_of(story.model.dynamics);
+  view["inputs"] = signal_names_value(story.model.inputs);
+  view["outputs"] = signal_names_value(story.model.outputs);
+  view["digest"] = story.version.digest;
+  view["digest_matches"] = story.digest_matches;
+  view["evidence"] = evidence_of(story.attempt);
+  view["record"] = record_value(stored, story);
   Json decisions = Json::array();
-  for (const storage::Decision& decision : story->decisions)
+  for (const storage::Decision& decision : story.decisions)
     decisions.push_back({{"id", id_value(decision.id)},
                          {"time", time_value(decision.time)},
                          {"kind", storage::name(decision.kind)},
-                         {"version", id_value(number)},
+                         {"version", id_value(story.version.number)},
                          {"actor", decision.actor},
                          {"reason", decision.reason}});
   view["decisions"] = std::move(decisions);

@@ -163,6 +163,7 @@ class Web(WebCase):
                 ("equipment", {}, 404), ("equipment", {"spacecraft": "SAT", "equipment": "X"}, 404),
                 ("version", {**values, "version": "999"}, 404),
                 ("version", {**values, "version": "x"}, 400),
+                ("version", {**values, "version": ""}, 400), ("run", {**values, "version": ""}, 400),
                 ("telemetry", {"spacecraft": "SAT", "parameter": "X"}, 404),
                 ("telemetry", {**values, "bins": "0"}, 400),
                 ("telemetry", {**values, "begin": "tomorrow"}, 400),

@@ -205,5 +205,24 @@ TEST(SchedulerOfSeveral, GivesTheOldestWindowOfAllEquipmentFirst) {
   EXPECT_EQ(scheduler.next(0), (Job{0, {-10, 10}, "slide"}));
 }
 
+TEST(SchedulerOfSeveral, TheBacklogOfOneHoldsUpNoOther) {
+  WindowScheduler scheduler({{.window = 20, .slide = 10}, {.window = 20, .slide = 10}}, 0);
+  for (storage::Time time = 0; time < 1000; time += 10) scheduler.touched(0, time, 0);
+  scheduler.touched(1, 900, 0);
+  for (std::size_t equipment = 0; equipment < 2; ++equipment) scheduler.reached(equipment, 1000);
+  const auto tried = [&](const std::optional<Job>& job) {
+    EXPECT_TRUE(job);
+    if (!job) return storage::Time{-1};
+    scheduler.finished(*job, true, 0);
+    return job->window.end;
+  };
+  EXPECT_EQ(tried(scheduler.next(0)), 10);
+  EXPECT_EQ(tried(scheduler.next(0)), 910) << "the other one's";
+  EXPECT_EQ(tried(scheduler.next(0)), 20);
+  scheduler.ask(1, 1000, "operator", 0);
+  EXPECT_EQ(tried(scheduler.next(0)), 1000);
+  EXPECT_EQ(tried(scheduler.next(0)), 30);
+}
+
 }  // namespace
 }  // namespace reident::window_scheduler_test
