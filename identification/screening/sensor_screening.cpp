@@ -85,9 +85,11 @@ std::string_view name(SensorFaultKind kind) {
     case SensorFaultKind::spike:
       return "spike";
     case SensorFaultKind::noise:
+      return "noise";
+    case SensorFaultKind::outlier:
       break;
   }
-  return "noise";
+  return "outlier";
 }
 
 std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bool>& analog) {

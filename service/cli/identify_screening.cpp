@@ -48,9 +48,11 @@ std::string_view what(SensorFaultKind kind) {
     case SensorFaultKind::spike:
       return "spikes, which no other column explains,";
     case SensorFaultKind::noise:
+      return "is noisy as it is nowhere else";
+    case SensorFaultKind::outlier:
       break;
   }
-  return "is noisy as it is nowhere else";
+  return "stands out of what the inputs and the rows around explain";
 }
 
 }  // namespace

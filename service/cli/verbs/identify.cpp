@@ -17,6 +17,7 @@
 #include "identification/statistics/level_shift.hpp"
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
+#include "service/cli/identify_outliers.hpp"
 #include "service/cli/identify_result.hpp"
 #include "service/cli/identify_screening.hpp"
 #include "service/cli/verb.hpp"
@@ -293,6 +294,8 @@ int run(const Arguments& arguments) {
   options.regime_inputs = data.regime_inputs;
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
+  if (auto* found = std::get_if<Identified>(&result); found && arguments.data.screening)
+    leave_out_outliers(data, *found, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
     return print_rejection(*verdict, arguments, data);
 

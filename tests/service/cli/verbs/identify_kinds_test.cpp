@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,29 @@ TEST_F(IdentifyKinds, AnOutputThatIsHeldForSomeRowsIsNamed) {
           << printed["warnings"];
     }
   }
+}
+
+TEST_F(IdentifyKinds, RowsThatNothingExplainsAreLeftOut) {
+  double x = 0;
+  write("odd.csv", stepped("u,y", 900, [&](int row, double u, double noise) {
+          const double y = x + 0.01 * noise + (row % 31 == 7 ? 3 + row % 11 : 0);
+          x = 0.9 * x + 0.1 * u;
+          return fmt::format("{:.5f}", y);
+        }));
+  Strings words = {"identify", "odd.csv", "--input", "u", "--output", "y"};
+  const json printed = json_of(words);
+  std::set<int> rows;
+  for (const json& one : printed["left_out"])
+    for (const json& range : one["rows"])
+      for (int row = range[0]; row < range[1]; ++row) rows.insert(row);
+  std::set<int> there;
+  for (int row = 7; row < 900; row += 31) there.insert(row);
+  EXPECT_EQ(rows, there);
+  EXPECT_EQ(printed["left_out"].back()["fault"], "outlier");
+  EXPECT_EQ(printed["order"], 1);
+  EXPECT_NEAR(printed["static_gain"][0][0], 1, 0.02);
+  words.emplace_back("--no-screening");
+  EXPECT_EQ(json_of(words)["left_out"], json::array());
 }
 
 TEST_F(IdentifyKinds, AnotherZeroAndAnInputThatSaturatesAreNamed) {
