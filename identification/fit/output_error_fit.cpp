@@ -246,9 +246,12 @@ Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Re
       rows.size());
 }
 
+Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
+  return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+}
+
 std::vector<ErrorColour> deviations_of(const Response& fit, const Record& record, RowRange rows) {
-  const Matrix errors =
-      record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+  const Matrix errors = errors_of(fit, record, rows);
   std::vector<ErrorColour> colours;
   for (Index q = 0; q < errors.cols(); ++q)
     colours.push_back(
@@ -258,8 +261,7 @@ std::vector<ErrorColour> deviations_of(const Response& fit, const Record& record
 
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows) {
   const std::vector<RowRange> ranges = ranges_of(record, rows);
-  const Matrix errors =
-      record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
+  const Matrix errors = errors_of(fit, record, rows);
   std::vector<ErrorColour> colours;
   for (Index q = 0; q < errors.cols(); ++q) {
     Series series(errors.col(q), ranges);

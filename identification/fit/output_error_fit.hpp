@@ -47,6 +47,9 @@ std::vector<Matrix> gain_errors_by_row(const Matrix& A, const Matrix& C, bool di
 Response refine_response(const Matrix& A, const Matrix& C, bool direct, const Record& record,
                          RowRange rows, int steps, double least_rate = 0);
 
+/// Returns what the free run of a fit leaves of the outputs (rows x p).
+Matrix errors_of(const Response& fit, const Record& record, RowRange rows);
+
 /// Returns the colour of the errors of a fit to `rows`, one for each output.
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows);
 

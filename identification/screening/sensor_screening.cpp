@@ -85,11 +85,9 @@ std::string_view name(SensorFaultKind kind) {
     case SensorFaultKind::spike:
       return "spike";
     case SensorFaultKind::noise:
-      return "noise";
-    case SensorFaultKind::outlier:
       break;
   }
-  return "outlier";
+  return "noise";
 }
 
 std::vector<SensorFault> sensor_faults(const Record& whole, const std::vector<bool>& analog) {

@@ -12,10 +12,8 @@
 namespace reident::identification {
 
 /// Rules, each with a condition on the other channels, are in METHOD.md.
-/// An outlier is a row that a model does not explain (statistics/outlying_rows.hpp): not found
-/// here.
-enum class SensorFaultKind { fill, stuck, spike, noise, outlier };
-/// Returns "fill", "stuck", "spike", "noise" or "outlier".
+enum class SensorFaultKind { fill, stuck, spike, noise };
+/// Returns "fill", "stuck", "spike" or "noise".
 std::string_view name(SensorFaultKind kind);
 
 /// One fault of one channel.

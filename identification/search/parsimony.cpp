@@ -9,7 +9,6 @@
 #include "identification/fit/dual_filters.hpp"
 #include "identification/numerics/decompositions.hpp"
 #include "identification/numerics/kernels.hpp"
-#include "identification/simulation/free_run.hpp"
 #include "identification/statistics/correlation.hpp"
 #include "identification/statistics/quantiles.hpp"
 
@@ -39,10 +38,6 @@ double squares_of_white(const Vector& errors, const ErrorColour& colour,
       sum += w * w;
     }
   return sum;
-}
-
-Matrix errors_of(const Response& fit, const Record& record, RowRange rows) {
-  return record.y.middleRows(rows.begin, rows.size()) - free_run(fit.model, record, rows, fit.x0);
 }
 
 /// The least difference of two values; 0 where all are one.

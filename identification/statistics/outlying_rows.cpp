@@ -26,7 +26,7 @@ std::vector<Index> outlying_rows(const Vector& values, const std::vector<RowRang
     }
   if (distances.empty()) return {};
   std::vector<double> sorted;
-  // Of five rows one is the median itself.
+  // One of five rows is the median itself.
   for (const auto& [row, distance] : distances)
     if (distance > 0) sorted.push_back(distance);
   if (sorted.empty()) return {};

@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "identification/samples/record.hpp"
 #include "identification/samples/tick_ranges.hpp"
-#include "identification/screening/sensor_screening.hpp"
 #include "service/cli/command.hpp"
 #include "service/model/derived_inputs.hpp"
 #include "service/telemetry_file/telemetry_file.hpp"
@@ -37,7 +37,8 @@ struct DataRequest {
 /// Rows that are not in the record because a column shows a fault there.
 struct LeftOut {
   std::string column;
-  identification::SensorFaultKind kind;
+  std::string_view fault;  // its name, for programs
+  std::string_view words;  // what the column does there
   identification::TickSet ticks;
 };
 

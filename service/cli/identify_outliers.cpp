@@ -16,10 +16,8 @@ using identification::Index;
 using identification::Matrix;
 using identification::Record;
 using identification::RowRange;
-using identification::SensorFaultKind;
 using identification::TickRange;
 using identification::TickSet;
-using identification::Vector;
 
 constexpr int most_passes = 4;
 constexpr double rounding = 1e-9;  // of an output
@@ -67,7 +65,9 @@ IdentifyData without_rows(const IdentifyData& whole, const std::vector<TickSet>&
   std::vector<TickRange> all;
   for (std::size_t q = 0; q < found.size(); ++q) {
     if (found[q].empty()) continue;
-    rest.left_out.push_back({whole.outputs[q], SensorFaultKind::outlier, found[q]});
+    rest.left_out.push_back({whole.outputs[q], "outlier",
+                             "stands out of what the inputs and the rows around explain",
+                             found[q]});
     all.insert(all.end(), found[q].begin(), found[q].end());
   }
   rest.record = without(whole.record, identification::united(std::move(all)));
@@ -91,21 +91,19 @@ double error_of(const IdentifyData& data, const Identified& model) {
 
 void leave_out_outliers(IdentifyData& data, Identified& found,
                         const identification::IdentifyOptions& options) {
+  std::vector<TickSet> now = outliers(data, found), before;
+  const auto are_none = [&now] { return std::ranges::all_of(now, &TickSet::empty); };
+  if (are_none()) return;
   const IdentifyData whole = data;
-  std::vector<TickSet> before;
-  Identified model = found;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    std::vector<TickSet> now = outliers(whole, model);
-    if (std::ranges::all_of(now, &TickSet::empty) || now == before) break;
-    before = std::move(now);
-    IdentifyData rest = without_rows(whole, before);
+  for (int pass = 0; pass < most_passes && !are_none() && now != before; ++pass) {
+    IdentifyData rest = without_rows(whole, now);
+    if (rest.validate.size() == 0) return;
     auto again = identification::identify(rest.record, rest.identify, options);
     auto* better = std::get_if<Identified>(&again);
-    if (rest.validate.size() == 0 || !better || !(error_of(rest, *better) < error_of(rest, found)))
-      break;
-    model = *better;
+    if (!better || !(error_of(rest, *better) < error_of(rest, found))) return;
     data = std::move(rest);
     found = std::move(*better);
+    before = std::exchange(now, outliers(whole, found));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "identification/screening/sensor_screening.hpp"
+
 namespace reident::cli {
 namespace {
 
@@ -48,11 +50,9 @@ std::string_view what(SensorFaultKind kind) {
     case SensorFaultKind::spike:
       return "spikes, which no other column explains,";
     case SensorFaultKind::noise:
-      return "is noisy as it is nowhere else";
-    case SensorFaultKind::outlier:
       break;
   }
-  return "stands out of what the inputs and the rows around explain";
+  return "is noisy as it is nowhere else";
 }
 
 }  // namespace
@@ -62,8 +62,8 @@ std::vector<LeftOut> leave_out_faults(Record& record, const std::vector<std::str
   std::vector<TickRange> holes;
   for (const SensorFault& fault : sensor_faults(record, analog_channels(record))) {
     const std::string& column = columns[static_cast<std::size_t>(fault.channel)];
-    if (found.empty() || found.back().column != column || found.back().kind != fault.kind)
-      found.push_back({column, fault.kind, {}});
+    if (found.empty() || found.back().column != column || found.back().fault != name(fault.kind))
+      found.push_back({column, name(fault.kind), what(fault.kind), {}});
     found.back().ticks.push_back(fault.ticks);
     holes.push_back(fault.ticks);
   }
@@ -80,7 +80,7 @@ nlohmann::ordered_json left_out_json(const IdentifyData& data) {
       const TickRange range = file_rows(data, ticks);
       rows.push_back({range.begin, range.end});
     }
-    list.push_back({{"column", one.column}, {"fault", name(one.kind)}, {"rows", rows}});
+    list.push_back({{"column", one.column}, {"fault", one.fault}, {"rows", rows}});
   }
   return list;
 }
@@ -100,8 +100,8 @@ std::vector<std::string> left_out_sentences(const IdentifyData& data) {
     }
     if (one.ticks.size() > most_told)
       ranges += fmt::format(" and {} more", one.ticks.size() - most_told);
-    sentences.push_back(fmt::format("left out: {} {} in {} {} ({})", one.column, what(one.kind),
-                                    rows, rows == 1 ? "row" : "rows", ranges));
+    sentences.push_back(fmt::format("left out: {} {} in {} {} ({})", one.column, one.words, rows,
+                                    rows == 1 ? "row" : "rows", ranges));
   }
   if (!sentences.empty()) sentences.push_back("--no-screening keeps these rows");
   return sentences;

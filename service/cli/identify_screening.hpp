@@ -7,7 +7,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "identification/samples/record.hpp"
-#include "identification/screening/sensor_screening.hpp"
 #include "service/cli/identify_data.hpp"
 
 namespace reident::cli {

@@ -44,7 +44,7 @@ TEST(OutlyingRows, ErrorsHaveNone) {
     test::Noise noise(seed);
     const Vector values = errors(noise, 0.01 * double(seed - 1));
     EXPECT_TRUE(outlying_rows(values, {{0, rows}}).empty()) << seed;
-    // Of more large values than normal ones have.
+    // With more large values than normal ones have.
     const Vector heavy =
         values.cwiseProduct(noise.normal(rows, 1).cwiseAbs() + Vector::Constant(rows, 0.2));
     EXPECT_TRUE(outlying_rows(heavy, {{0, rows}}).empty()) << seed;
