@@ -102,19 +102,12 @@ Matrix outputs_of(const Fitted& fitted, const Record& record,
   return outputs;
 }
 
-std::vector<RowRange> ranges_of(const Record& record, RowRange rows) {
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : segments_from(record, rows))
-    ranges.push_back({segment.begin, segment.end});
-  return ranges;
-}
-
 /// Rows that count as one in the errors of the output whose errors last longest.
 double correlated_rows_of_errors(const Fitted& fitted, const Record& record, RowRange rows,
                                  const std::vector<Segment>& segments) {
   return most_correlated_rows(
       record.y.middleRows(rows.begin, rows.size()) - outputs_of(fitted, record, segments),
-      ranges_of(record, rows));
+      ranges_from(record, rows));
 }
 
 Response response_of(const Fitted& fitted, Index rows) {
@@ -260,7 +253,7 @@ std::vector<ErrorColour> deviations_of(const Response& fit, const Record& record
 }
 
 std::vector<ErrorColour> colours_of(const Response& fit, const Record& record, RowRange rows) {
-  const std::vector<RowRange> ranges = ranges_of(record, rows);
+  const std::vector<RowRange> ranges = ranges_from(record, rows);
   const Matrix errors = errors_of(fit, record, rows);
   std::vector<ErrorColour> colours;
   for (Index q = 0; q < errors.cols(); ++q) {

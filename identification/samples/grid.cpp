@@ -58,8 +58,7 @@ struct Rows {
 
   void append(const std::vector<double>& row, std::int64_t tick) {
     values.insert(values.end(), row.begin(), row.end());
-    const bool follows =
-        !segments.empty() && segments.back().first_tick + segments.back().size() == tick;
+    const bool follows = !segments.empty() && segments.back().end_tick() == tick;
     if (!follows) segments.push_back({count, count, tick});
     segments.back().end = ++count;
   }

@@ -34,6 +34,8 @@ struct Segment {
   Index end = 0;
   std::int64_t first_tick = 0;  // of the row `begin`
   Index size() const { return end - begin; }
+  std::int64_t tick_of(Index row) const { return first_tick + (row - begin); }
+  std::int64_t end_tick() const { return tick_of(end); }
   bool operator==(const Segment&) const = default;
 };
 
@@ -60,6 +62,9 @@ std::vector<Segment> segments_within(const Record& record, RowRange rows);
 /// Returns segments_within() with the rows counted from rows.begin.
 std::vector<Segment> segments_from(const Record& record, RowRange rows);
 
+/// Returns the ranges of segments_from().
+std::vector<RowRange> ranges_from(const Record& record, RowRange rows);
+
 /// Returns the rows at `ticks` as a record of their own, with their ticks; empty where there are
 /// none.
 Record rows_at(const Record& record, TickRange ticks);
@@ -67,5 +72,13 @@ Record rows_at(const Record& record, TickRange ticks);
 /// Returns the first row at or behind the tick; rows() where there is none. The cost is logarithmic
 /// in the segments.
 Index first_row_at(const Record& record, std::int64_t tick);
+
+/// Returns what the digits of a channel resolve: the least difference of two of its values, 0 where
+/// all are one.
+double resolution(Vector channel);
+
+/// Returns the tick of the row; of rows(), the one behind the last row's. Requires that the record
+/// has rows, and the cost is that of first_row_at().
+std::int64_t tick_of_row(const Record& record, Index row);
 
 }  // namespace reident::identification

@@ -66,7 +66,7 @@ Record without(Record record, const TickSet& holes) {
   std::vector<Segment> kept;
   auto hole = holes.begin();
   for (const Segment& segment : record.segments) {
-    const std::int64_t end = segment.first_tick + segment.size();
+    const std::int64_t end = segment.end_tick();
     std::int64_t tick = segment.first_tick;
     while (tick < end) {
       while (hole != holes.end() && hole->end <= tick) ++hole;

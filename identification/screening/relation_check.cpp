@@ -70,12 +70,6 @@ bool may_shift(const Vector& r, double limit) {
   return !is_median_small || !ranges_beyond(r, 0, limit / 2, shift_rows, true).empty();
 }
 
-std::int64_t tick_of(const Record& record, Index row) {
-  const auto segment = std::partition_point(record.segments.begin(), record.segments.end(),
-                                            [row](const Segment& one) { return one.end <= row; });
-  return segment->first_tick + (row - segment->begin);
-}
-
 }  // namespace
 
 std::vector<Inconsistency> inconsistencies(const Record& residual, double tolerance) {
@@ -86,7 +80,7 @@ std::vector<Inconsistency> inconsistencies(const Record& residual, double tolera
     for (const RowRange& rows : ranges_beyond(r, centre, limit, length, is_shift)) {
       const RowRange wide{std::max<Index>(0, rows.begin - margin_rows),
                           std::min(r.size(), rows.end + margin_rows)};
-      found.push_back({{tick_of(residual, wide.begin), tick_of(residual, wide.end - 1) + 1},
+      found.push_back({{tick_of_row(residual, wide.begin), tick_of_row(residual, wide.end - 1) + 1},
                        residual_of(r, rows, is_shift),
                        is_shift});
     }

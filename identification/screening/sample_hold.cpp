@@ -21,8 +21,7 @@ std::vector<std::vector<std::int64_t>> changes_of(const Record& record) {
       std::vector<std::int64_t> ticks;
       for (const Segment& segment : record.segments)
         for (Index row = segment.begin + 1; row < segment.end; ++row)
-          if ((*channels)(row, c) != (*channels)(row - 1, c))
-            ticks.push_back(segment.first_tick + (row - segment.begin));
+          if ((*channels)(row, c) != (*channels)(row - 1, c)) ticks.push_back(segment.tick_of(row));
       if (!ticks.empty()) changes.push_back(std::move(ticks));
     }
   return changes;

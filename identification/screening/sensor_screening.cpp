@@ -17,7 +17,7 @@ constexpr Index longest_bridged = 30;  // rows, as of a lost packet
 
 TickRange ticks_of(const Record& record, std::size_t segment, Index begin, Index end) {
   const Segment& within = record.segments[segment];
-  const std::int64_t first = within.first_tick + (begin - within.begin);
+  const std::int64_t first = within.tick_of(begin);
   return {first, first + (end - begin)};
 }
 
@@ -62,7 +62,7 @@ Record without_faults(Record record, const std::vector<SensorFault>& faults) {
     auto values = c < inputs ? record.u.col(c) : record.y.col(c - inputs);
     auto segment = record.segments.begin();
     for (const TickRange& hole : united(std::move(ticks))) {
-      while (segment->first_tick + segment->size() < hole.end) ++segment;
+      while (segment->end_tick() < hole.end) ++segment;
       const Index begin = segment->begin + (hole.begin - segment->first_tick);
       const Index end = begin + (hole.end - hole.begin);
       if (end - begin <= longest_bridged && begin > segment->begin && end < segment->end)

@@ -332,10 +332,8 @@ std::vector<HeldOutError> held_out(const DelayedFit& fit, OperatingPoint point,
 /// The rows that count as one in the errors of a fit.
 double rows_as_one(const DelayedFit& fit, const Rows& rows) {
   const Record record = rows.with(fit.delays);
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : record.segments) ranges.push_back({segment.begin, segment.end});
   const Matrix y_hat = free_run(fit.fit.model, record, record.all(), fit.fit.x0);
-  return most_correlated_rows(record.y - y_hat, ranges);
+  return most_correlated_rows(record.y - y_hat, ranges_from(record, record.all()));
 }
 
 }  // namespace

@@ -151,12 +151,12 @@ double held_out_error_of_sums(const Record& record, const std::vector<Fold>& fol
       sums.row(i).head(m) += held * (record.u.row(row) - mean.transpose());
     }
   };
-  const double length = double(record.segments.back().first_tick + record.segments.back().size() -
-                               record.segments.front().first_tick);
+  const double length =
+      double(record.segments.back().end_tick() - record.segments.front().first_tick);
   std::int64_t before = record.segments.front().first_tick;
   for (const Segment& segment : record.segments)
     for (Index row = segment.begin; row < segment.end; ++row) {
-      const std::int64_t tick = segment.first_tick + (row - segment.begin);
+      const std::int64_t tick = segment.tick_of(row);
       if (row > 0) advance(row - 1, tick - before);
       before = tick;
       if (row % stride != 0) continue;

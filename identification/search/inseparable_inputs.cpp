@@ -118,9 +118,7 @@ std::vector<std::string> inseparable_inputs(PreparedRows& rows, const Identified
   const Vector u_scale = channels.u_scale(channels.inputs);
   const Vector y_scale = channels.y_scale(channels.outputs);
   const RowRange looked_at = fitted_rows(rows, identified.recipe);
-  std::vector<RowRange> segments;
-  for (const Segment& segment : segments_from(rows.normalised(), looked_at))
-    segments.push_back({segment.begin, segment.end});
+  const std::vector<RowRange> segments = ranges_from(rows.normalised(), looked_at);
   const Matrix C =
       y_scale.cwiseInverse().asDiagonal() * identified.model.C(channels.outputs, Eigen::all);
   const std::vector<Matrix> errors = gain_errors_by_row(

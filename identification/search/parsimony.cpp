@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "identification/fit/dual_filters.hpp"
@@ -38,15 +37,6 @@ double squares_of_white(const Vector& errors, const ErrorColour& colour,
       sum += w * w;
     }
   return sum;
-}
-
-/// The least difference of two values; 0 where all are one.
-double least_step(Vector values) {
-  std::sort(values.begin(), values.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (Index i = 1; i < values.size(); ++i)
-    if (values(i) > values(i - 1)) least = std::min(least, values(i) - values(i - 1));
-  return std::isfinite(least) ? least : 0;
 }
 
 /// A row for each of the mixtures of outputs whose errors are uncorrelated. Where outputs are
@@ -93,12 +83,6 @@ Matrix white_products(const Matrix& A, double slow, const Matrix& u, const Vecto
     products += own.topLeftCorner(width, width) - totals / own(width, width) * totals.transpose();
   }
   return products;
-}
-
-std::vector<RowRange> ranges_of(const std::vector<Segment>& segments) {
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : segments) ranges.push_back({segment.begin, segment.end});
-  return ranges;
 }
 
 Response mixed(Response fit, const Matrix& mixtures) {
@@ -163,7 +147,7 @@ RicherFit::RicherFit(const Response& fit, bool direct, const Record& record, Row
       least_rate_(least_rate),
       colours_(colours_of(mixed(fit, mixtures_), mixed_, rows)),
       squares_(whitened_squares(fit, direct, colours_)),
-      correlated_rows_(most_correlated_rows(errors, ranges_of(segments_from(record, rows)))) {}
+      correlated_rows_(most_correlated_rows(errors, ranges_from(record, rows))) {}
 
 Vector RicherFit::whitened_squares(const Response& fit, bool direct,
                                    const std::vector<ErrorColour>& colours) const {
@@ -208,7 +192,7 @@ bool errs_within_steps(const Response& fit, const Record& record, RowRange rows)
   constexpr double allowed = 1.1;
   const Matrix errors = errors_of(fit, record, rows);
   for (Index q = 0; q < errors.cols(); ++q) {
-    const double step = least_step(record.y.col(q).segment(rows.begin, rows.size()));
+    const double step = resolution(record.y.col(q).segment(rows.begin, rows.size()));
     if (!(errors.col(q).norm() <= allowed * step * std::sqrt(double(rows.size()) / 12)))
       return false;
   }
@@ -220,7 +204,7 @@ bool drives_slow_modes(const Response& fit, const Record& record, RowRange rows,
       1e-10;  // of a column's square: below it the columns before have it
   const Index m = record.u.cols(), p = record.y.cols();
   if (rows.size() < 4 * m * (2 + fit.model.order())) return true;
-  const std::vector<RowRange> segments = ranges_of(segments_from(record, rows));
+  const std::vector<RowRange> segments = ranges_from(record, rows);
   const Matrix u = record.u.middleRows(rows.begin, rows.size()).transpose();
   const Matrix errors = errors_of(fit, record, rows);
   const Matrix mixed_errors = errors * uncorrelated_mixtures(errors).transpose();

@@ -47,7 +47,7 @@ RangeSums PreparedRows::sums_of(RowRange part) {
   const std::vector<Segment> parts =
       segments_within(record_, {fitted_.begin + part.begin, fitted_.begin + part.end});
   if (parts.empty()) return {};
-  const TickRange ticks{parts.front().first_tick, parts.back().first_tick + parts.back().size()};
+  const TickRange ticks{parts.front().first_tick, parts.back().end_tick()};
   return keep_ ? lag_sums_.keep_over(ticks, record_) : lag_sums_.over(ticks, record_);
 }
 

@@ -33,7 +33,7 @@ Matrix inputs_within(const StateSpaceModel& model, const Record& record, const S
 }  // namespace
 
 std::int64_t ticks_between(const Segment& before, const Segment& after) {
-  return after.first_tick - (before.first_tick + before.size());
+  return after.first_tick - before.end_tick();
 }
 
 bool is_bridged(const Record& record, const Segment& before, const Segment& after) {

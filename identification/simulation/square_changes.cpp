@@ -28,9 +28,7 @@ SquareChanges square_changes(const Matrix& signals, const std::vector<RowRange>&
 }
 
 SquareChanges square_changes(const Record& record) {
-  std::vector<RowRange> segments;
-  for (const Segment& segment : record.segments) segments.push_back({segment.begin, segment.end});
-  return square_changes(record.u, segments);
+  return square_changes(record.u, ranges_from(record, record.all()));
 }
 
 }  // namespace reident::identification

@@ -129,9 +129,7 @@ std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index pas
       feedback_beside(record, segments, {past, past}, of_inputs).value_or(std::vector<Feedback>());
   if (found.empty()) return found;
   Past with_rhythms{past, past};
-  std::vector<RowRange> ranges;
-  for (const Segment& segment : segments_from(record, rows))
-    ranges.push_back({segment.begin, segment.end});
+  const std::vector<RowRange> ranges = ranges_from(record, rows);
   const Index m = record.u.cols();
   for (Index i = 0; i < m; ++i)
     with_rhythms.rhythms.push_back(rhythm_of(

@@ -371,10 +371,8 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
 }
 
 Index file_row(const IdentifyData& data, Index row) {
-  const auto segment = std::find_if(data.record.segments.begin(), data.record.segments.end(),
-                                    [row](const auto& one) { return row < one.end; });
-  const std::int64_t tick = segment->first_tick + (row - segment->begin);
-  return std::lower_bound(data.file_ticks.begin(), data.file_ticks.end(), tick) -
+  return std::lower_bound(data.file_ticks.begin(), data.file_ticks.end(),
+                          tick_of_row(data.record, row)) -
          data.file_ticks.begin();
 }
 

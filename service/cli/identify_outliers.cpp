@@ -22,12 +22,6 @@ using identification::TickSet;
 constexpr int most_passes = 4;
 constexpr double rounding = 1e-9;  // of an output
 
-std::int64_t tick_of(const Record& record, Index row) {
-  for (const auto& segment : record.segments)
-    if (row < segment.end) return segment.first_tick + (row - segment.begin);
-  return record.segments.back().first_tick + record.segments.back().size();
-}
-
 /// From the first row of the identification on, from which a model's state is known.
 RowRange run_of(const IdentifyData& data) {
   return {data.identify.begin, std::max(data.identify.end, data.validate.end)};
@@ -42,9 +36,7 @@ Matrix errors_of(const IdentifyData& data, const Identified& model) {
 /// By output.
 std::vector<TickSet> outliers(const IdentifyData& data, const Identified& model) {
   const RowRange run = run_of(data);
-  std::vector<RowRange> segments;
-  for (const auto& segment : segments_from(data.record, run))
-    segments.push_back({segment.begin, segment.end});
+  const std::vector<RowRange> segments = ranges_from(data.record, run);
   const Matrix errors = errors_of(data, model);
   std::vector<TickSet> found;
   for (Index q = 0; q < errors.cols(); ++q) {
@@ -52,7 +44,7 @@ std::vector<TickSet> outliers(const IdentifyData& data, const Identified& model)
     if (errors.col(q).norm() >
         rounding * data.record.y.col(q).segment(run.begin, run.size()).norm())
       for (const Index row : identification::outlying_rows(errors.col(q), segments)) {
-        const std::int64_t tick = tick_of(data.record, run.begin + row);
+        const std::int64_t tick = tick_of_row(data.record, run.begin + row);
         ticks.push_back({tick, tick + 1});
       }
     found.push_back(identification::united(std::move(ticks)));
@@ -72,8 +64,8 @@ IdentifyData without_rows(const IdentifyData& whole, const std::vector<TickSet>&
   }
   rest.record = without(whole.record, identification::united(std::move(all)));
   const auto rows = [&](RowRange before) {
-    return RowRange{first_row_at(rest.record, tick_of(whole.record, before.begin)),
-                    first_row_at(rest.record, tick_of(whole.record, before.end))};
+    return RowRange{first_row_at(rest.record, tick_of_row(whole.record, before.begin)),
+                    first_row_at(rest.record, tick_of_row(whole.record, before.end))};
   };
   rest.identify = rows(whole.identify);
   rest.validate = rows(whole.validate);

@@ -148,9 +148,9 @@ Record InputExpressions::evaluate(Record record) {
       parameters = record.u.row(row).transpose();
       evaluate(parameters, inputs);
       if (!inputs.allFinite()) continue;
-      const std::int64_t tick = segment.first_tick + (row - segment.begin);
+      const std::int64_t tick = segment.tick_of(row);
       auto& segments = result.segments;
-      if (segments.empty() || segments.back().first_tick + segments.back().size() != tick)
+      if (segments.empty() || segments.back().end_tick() != tick)
         segments.push_back({rows, rows, tick});
       result.u.row(rows) = inputs.transpose();
       result.y.row(rows) = record.y.row(row);

@@ -80,7 +80,7 @@ Json column_in_bins(const identification::Record& record, storage::Time period,
   };
   for (const identification::Segment& segment : record.segments) {
     for (identification::Index row = segment.begin; row < segment.end; ++row) {
-      const Time time = (segment.first_tick + (row - segment.begin)) * period;
+      const Time time = segment.tick_of(row) * period;
       const double value = values(row);
       if (!std::isfinite(value) || time < bins.range().begin || time >= bins.range().end) continue;
       if (const std::size_t number = bins.of(time); number != bin.number || bin.samples == 0) {

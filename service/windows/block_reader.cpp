@@ -27,7 +27,7 @@ std::vector<double> mean_squared_difference(const Record& one, const Record& oth
   for (const identification::Segment& a : one.segments)
     for (const identification::Segment& b : other.segments) {
       const std::int64_t begin = std::max(a.first_tick, b.first_tick);
-      const std::int64_t end = std::min(a.first_tick + a.size(), b.first_tick + b.size());
+      const std::int64_t end = std::min(a.end_tick(), b.end_tick());
       if (begin >= end) continue;
       const Index count = end - begin;
       squares += (one.y.middleRows(a.begin + (begin - a.first_tick), count) -

@@ -40,7 +40,7 @@ class Run {
     if (tick_ != segment.first_tick) x_ = state_at(segment);
     Matrix outputs(segment.size(), model_.outputs());
     x_ = run_segment(model_, record_, segment, std::move(x_), outputs, 0);
-    tick_ = segment.first_tick + segment.size();
+    tick_ = segment.end_tick();
     square_errors_ += (record_.y.middleRows(segment.begin, segment.size()) - outputs)
                           .colwise()
                           .squaredNorm()
@@ -56,7 +56,7 @@ class Run {
  private:
   Vector state_at(const Segment& segment) const {
     const auto before = segments_within(record_, {0, segment.begin});
-    if (rows_ > 0 && !before.empty() && tick_ == before.back().first_tick + before.back().size())
+    if (rows_ > 0 && !before.empty() && tick_ == before.back().end_tick())
       if (auto bridged = state_after_hole(model_, record_, before.back(), segment, x_,
                                           {identification::square_changes(record_),
                                            square_errors_ / static_cast<double>(rows_)}))

@@ -47,7 +47,7 @@ class DifferentValues {
 }  // namespace
 
 void add_segment(std::vector<Segment>& segments, Segment next) {
-  if (!segments.empty() && segments.back().first_tick + segments.back().size() == next.first_tick)
+  if (!segments.empty() && segments.back().end_tick() == next.first_tick)
     segments.back().end = next.end;
   else
     segments.push_back(next);
@@ -91,7 +91,7 @@ Record PackedRows::blank(Index rows) const {
 Index PackedRows::rows_from(std::int64_t tick) const {
   Index rows = 0;
   for (const Segment& segment : segments_)
-    rows += std::clamp<Index>(segment.first_tick + segment.size() - tick, 0, segment.size());
+    rows += std::clamp<Index>(segment.end_tick() - tick, 0, segment.size());
   return rows;
 }
 
@@ -113,8 +113,8 @@ void PackedRows::unpack(std::int64_t from_tick, Record& record, Index at) const 
   for (const Segment& segment : segments_) {
     const Index begin = std::max(segment.begin, first);
     if (begin < segment.end)
-      add_segment(record.segments, {at + begin - first, at + segment.end - first,
-                                    segment.first_tick + (begin - segment.begin)});
+      add_segment(record.segments,
+                  {at + begin - first, at + segment.end - first, segment.tick_of(begin)});
   }
 }
 

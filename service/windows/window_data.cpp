@@ -167,11 +167,7 @@ identification::TickRange ticks_of(storage::TimeRange range, Duration period) {
 
 storage::Time time_of_row(const identification::Record& record, identification::Index row,
                           Duration period) {
-  const auto segment =
-      std::find_if(record.segments.begin(), record.segments.end(),
-                   [row](const identification::Segment& s) { return row < s.end; });
-  assert(segment != record.segments.end() && row >= segment->begin);
-  return (segment->first_tick + (row - segment->begin)) * period;
+  return tick_of_row(record, row) * period;
 }
 
 }  // namespace reident

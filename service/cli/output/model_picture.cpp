@@ -63,7 +63,7 @@ std::vector<TraceSegment> segments_of(const identification::Record& record, stor
   for (const identification::Segment& segment : record.segments) {
     TraceSegment drawn;
     for (Index row = segment.begin; row < segment.end; ++row) {
-      const auto tick = static_cast<double>(segment.first_tick + (row - segment.begin));
+      const auto tick = static_cast<double>(segment.tick_of(row));
       drawn.x.push_back(tick * record.period_s - begin);
       drawn.y.push_back(values(row));
     }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -73,16 +72,6 @@ std::optional<Refusal> refuse_arguments(const Arguments& arguments) {
   return std::nullopt;
 }
 
-/// The least change from one value of an output to another: what its digits resolve.
-double resolution_of(Vector values) {
-  std::sort(values.begin(), values.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (Index row = 1; row < values.size(); ++row)
-    if (const double change = values(row) - values(row - 1); change > 0)
-      least = std::min(least, change);
-  return std::isfinite(least) ? least : 0;
-}
-
 /// A model may explain the rows that it was chosen on and not the ones behind them. Rows in which
 /// an output does not move by more than a digit, or than the model errs where it was identified,
 /// say nothing of that: of such rows noise is all that there is to explain, and no model's fit is
@@ -109,7 +98,7 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
     const double change =
         std::sqrt((rows.tail(rows.size() - 1) - rows.head(rows.size() - 1)).squaredNorm() / 2 /
                   static_cast<double>(rows.size()));
-    const double resolution = resolution_of(data.record.y.col(q));
+    const double resolution = identification::resolution(data.record.y.col(q));
     const double rounding = 1e-9 * std::abs(rows(0));
     if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
       outcome.warnings.push_back(fmt::format(
@@ -167,9 +156,7 @@ void warn_of_bends(const std::vector<identification::InputCorrelation>& bends,
 /// `y_hat` is the free run over `rows`.
 void warn_of_shifts(const IdentifyData& data, RowRange rows, const identification::Matrix& y_hat,
                     IdentifyOutcome& outcome) {
-  std::vector<RowRange> segments;
-  for (const auto& segment : segments_from(data.record, rows))
-    segments.push_back({segment.begin, segment.end});
+  const std::vector<RowRange> segments = ranges_from(data.record, rows);
   identification::Matrix columns(rows.size(), data.record.u.cols() + y_hat.cols());
   columns << data.record.u.middleRows(rows.begin, rows.size()), y_hat;
   for (Index q = 0; q < y_hat.cols(); ++q) {

@@ -25,6 +25,21 @@ TEST(Record, PartsOfSegmentsKeepTheirTicks) {
   EXPECT_THAT(segments_within(two_segments(), {4, 4}), IsEmpty());
 }
 
+TEST(Record, RangesOfPartsCountFromTheFirstOfTheirRows) {
+  EXPECT_THAT(ranges_from(two_segments(), {2, 6}), ElementsAre(RowRange{0, 2}, RowRange{2, 4}));
+  EXPECT_THAT(ranges_from(two_segments(), {4, 4}), IsEmpty());
+}
+
+TEST(Record, KnowsTheTickOfEachRowAndOfTheOneBehindTheLast) {
+  const std::int64_t ticks[] = {0, 1, 2, 3, 7, 8, 9, 10};
+  for (Index row = 0; row <= 7; ++row) EXPECT_EQ(tick_of_row(two_segments(), row), ticks[row]);
+}
+
+TEST(Record, ResolutionIsTheLeastDifferenceOfTwoValues) {
+  EXPECT_EQ(resolution(Vector{{3, 1, 1.25, 3, 2}}), 0.25);
+  EXPECT_EQ(resolution(Vector{{3, 3}}), 0);
+}
+
 TEST(Record, FindsTheFirstRowAtATick) {
   struct {
     std::int64_t tick;
