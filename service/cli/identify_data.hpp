@@ -40,6 +40,7 @@ struct LeftOut {
   std::string_view fault;  // its name, for programs
   std::string_view words;  // what the column does there
   identification::TickSet ticks;
+  bool operator==(const LeftOut&) const = default;
 };
 
 struct IdentifyData {

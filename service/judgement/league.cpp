@@ -13,7 +13,6 @@
 namespace reident {
 namespace {
 
-using identification::InputRanges;
 using storage::Block;
 using storage::BlockScore;
 using storage::Time;
@@ -41,8 +40,8 @@ void Judge::take_in(const League& league) {
   bool are_other_regimes = false;
   while (regimes_.numbers().size() < league.blocks.size()) {
     const Block& block = league.blocks[regimes_.numbers().size()];
-    if (regimes_.add(counts(block) ? InputRanges{block.input_low, block.input_high}
-                                   : InputRanges()))
+    if (regimes_.add(counts(block) ? identification::InputRanges{block.input_low, block.input_high}
+                                   : identification::InputRanges()))
       are_other_regimes = true;
   }
   if (are_other_regimes) change_ = {};
@@ -192,7 +191,6 @@ std::vector<ComparedBlock> Judge::compared_blocks(const League& league, const Me
 std::optional<Reason> Judge::failure(const League& league) {
   if (!league.champion) return std::nullopt;
   take_in(league);
-  const std::int64_t champion = league.champion->version;
   const auto fails_against = [&](const char* rival,
                                  const Comparison& compared) -> std::optional<Reason> {
     const double error = compared.one.mrse_percent(), theirs = compared.other.mrse_percent();
@@ -204,7 +202,8 @@ std::optional<Reason> Judge::failure(const League& league) {
                           error * (1 - limits_->margin_percent / 100) > theirs;
     if (!is_plain && !(bet_on(losses, 0).log_wealth() > -std::log(error_probability(*limits_))))
       return std::nullopt;
-    return because<Code::champion_failed>(champion, error, losses.size(), rival, theirs);
+    return because<Code::champion_failed>(league.champion->version, error, losses.size(), rival,
+                                          theirs);
   };
   if (const Sums& own = compared_.own; !(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;

@@ -54,8 +54,9 @@ struct Finding {
   /// Its error and the champion's over the regimes that the champion has served, with their shares
   /// of the time.
   std::pair<double, double> over_regimes_mrse_percent;
-  /// Its error on telemetry from before `changed`, 0 without any, and the champion's there or
-  /// since, whichever is larger.
+  /// Its error on telemetry from before `changed`, 0 without any, and what the change explains of
+  /// it: the champion's there or since, whichever is larger, or the sum of both that a challenger
+  /// errs, where that is less.
   std::pair<double, double> before_change_mrse_percent;
   double wealth_without_offset = 0;  // log, without what an offset of the likeliest sensor explains
   double mrse_without_offset = 0;    // the champion's [%], likewise

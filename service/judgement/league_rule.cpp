@@ -22,14 +22,20 @@ double less_by_margin(double mrse_percent, const EquipmentConfig& limits) {
   return mrse_percent * (1 - limits.margin_percent / 100);
 }
 
-/// Puts into `finding` what the scores say.
-void take_scores(const Bet& bet, Finding& finding) {
+/// What a member's errors and the bet on it say, before any condition is looked at.
+Finding finding_of(const Member& member, const Sums& own, const Bet& bet) {
+  Finding finding;
+  finding.version = member.version;
+  finding.blocks = own.blocks;
+  finding.mrse_percent = own.mrse_percent();
+  finding.fit_percent = own.fit_percent();
   const auto recent = std::min<std::ptrdiff_t>(bet.scores().size(), 2 * blocks_of_cycle);
-  if (recent == 0) return;
+  if (recent == 0) return finding;
   finding.dependence = bet.dependence();
   finding.log_wealth = bet.log_wealth();
   finding.mean_score = bet.scores().mean();
   finding.recent_score = bet.scores().tail(recent).mean();
+  return finding;
 }
 
 /// The member compared with the champion without what an offset, which is fitted to them, explains
@@ -54,7 +60,7 @@ const SensorPast& past_of(const Standard& standard, std::size_t place) {
   PhasedScores scores;
   for_each_score(standard.league, *standard.league.champion, INT64_MIN, 0,
                  [&](std::size_t, const auto& block, const BlockScore& score) {
-                   if (has_effect(score, place) &&
+                   if (effect_in(score, place) &&
                        (block.range.begin < standard.since || scores.size() < reference_blocks))
                      scores.emplace_back(phase_of(block), &score);
                  });
@@ -74,6 +80,21 @@ bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
   });
 }
 
+/// The least that one challenger errs before the last change and since, together [MRSE in percent].
+double least_on_both_sides(const Standard& standard) {
+  double least = INFINITY;
+  for (const Member& member : standard.league.challengers) {
+    const auto error_in = [&](storage::TimeRange range) {
+      const auto served = served_regimes(standard.league, standard.regimes, member, range);
+      const double error = served_errors(standard.league, served, member, false).first;
+      return error > 0 && uncovered_share(served) == 0 ? error : INFINITY;
+    };
+    least = std::min(
+        least, error_in({INT64_MIN, standard.changed}) + error_in({standard.changed, INT64_MAX}));
+  }
+  return least;
+}
+
 /// R2. Uncovered blocks count as if they were lost entirely.
 std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Comparison& compared, Finding& finding) {
@@ -88,10 +109,10 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   const auto [own, of_champion] = finding.over_regimes_mrse_percent =
       served_errors(league, served, member, true);
   if (!(own < of_champion)) return because<Code::worse_over_regimes>(champion, own, of_champion);
-  // What the change did is as much from either side of it.
+  // What the change did is as much from either side of it, and no one model misses it on both.
   auto& [before, change] = finding.before_change_mrse_percent = served_errors(
       league, served_regimes(league, regimes, member, {INT64_MIN, changed}), member, false);
-  change = std::max(change, finding.champion_mrse_percent);
+  change = std::min(std::max(change, finding.champion_mrse_percent), least_on_both_sides(standard));
   if (most * before > change) return because<Code::worse_before_change>(before, champion, change);
   return std::nullopt;
 }
@@ -166,8 +187,6 @@ double log_threshold(const League& league, const Member& member, Time since,
 }
 
 Finding judge_first(const League& league, const Member& member, const EquipmentConfig& limits) {
-  Finding finding;
-  finding.version = member.version;
   Sums own;
   Comparison simulator;
   for_each_score(league, member, INT64_MIN, 0,
@@ -175,11 +194,8 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
                    own.add(block, score.square);
                    simulator.add(i, block, score, score, block.baseline_square);
                  });
-  finding.blocks = own.blocks;
-  finding.mrse_percent = own.mrse_percent();
-  finding.fit_percent = own.fit_percent();
+  Finding finding = finding_of(member, own, bet_on(simulator.scores.values(), 0));
   finding.baseline_mrse_percent = simulator.other.mrse_percent();
-  take_scores(bet_on(simulator.scores.values(), 0), finding);
   finding.recent_score = -finding.mrse_percent;
   const bool is_known = !simulator.blocks.empty();
   if (is_known) finding.log_threshold = log_threshold(league, member, INT64_MIN, limits);
@@ -194,8 +210,8 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
     const bool is_better = is_known ? finding.log_wealth > finding.log_threshold &&
                                           error < less_by_margin(rival, limits)
                                     : error < rival;
-    if (!is_better) return because<Code::not_better_than_simulator>(error, rival);
-    return std::nullopt;
+    return is_better ? std::nullopt
+                     : std::optional(because<Code::not_better_than_simulator>(error, rival));
   }();
   return finding;
 }
@@ -204,15 +220,10 @@ Finding judge_against_champion(const Standard& standard, const Member& member,
                                const Comparison& compared) {
   const EquipmentConfig& limits = standard.limits;
   const std::int64_t champion = standard.league.champion->version;
-  Finding finding;
-  finding.version = member.version;
-  finding.blocks = std::ssize(compared.blocks);
+  const Bet bet = bet_on(compared.scores.values(), standard.assumed);
+  Finding finding = finding_of(member, compared.one, bet);
   finding.changed = standard.changed;
   finding.log_threshold = log_threshold(standard.league, member, standard.since, limits);
-  const Bet bet = bet_on(compared.scores.values(), standard.assumed);
-  take_scores(bet, finding);
-  finding.mrse_percent = compared.one.mrse_percent();
-  finding.fit_percent = compared.one.fit_percent();
   finding.champion_mrse_percent = compared.other.mrse_percent();
   finding.obstacle = [&]() -> std::optional<Reason> {
     if (compared.blocks.empty()) return because<Code::not_compared>(champion);

@@ -7,18 +7,9 @@ namespace reident {
 
 using storage::BlockScore;
 
-namespace {
-
-/// The sensor's first number; null where the record has none.
 const double* effect_in(const BlockScore& score, std::size_t place) {
   const std::size_t numbers = 1 + 2 * score.square.size(), first = place * numbers;
   return first + numbers <= score.bias_effects.size() ? &score.bias_effects[first] : nullptr;
-}
-
-}  // namespace
-
-bool has_effect(const BlockScore& score, std::size_t place) {
-  return effect_in(score, place) != nullptr;
 }
 
 SensorPast::SensorPast(std::size_t place, const PhasedScores& scores) : place_(place) {
@@ -57,7 +48,7 @@ OffsetFit::Effect OffsetFit::effect_on(std::size_t output, const BlockScore& sco
 
 void OffsetFit::add(std::size_t phase, const BlockScore& score) {
   sums_.resize(score.mean.size(), Effect::Zero());
-  if (past_ && !has_effect(score, past_->place())) return;
+  if (past_ && !effect_in(score, past_->place())) return;
   const auto rows = static_cast<double>(score.rows);
   rows_ += rows;
   if (past_) departure_ += rows * past_->departure(phase, score);

@@ -14,8 +14,9 @@
 
 namespace reident {
 
-/// Whether the score says what a bias of the inputs' sensor at `place` does.
-bool has_effect(const storage::BlockScore& score, std::size_t place);
+/// The first of the numbers that say what a bias of the inputs' sensor at `place` does
+/// (BlockScore::bias_effects); null where the score has none.
+const double* effect_in(const storage::BlockScore& score, std::size_t place);
 
 /// Scores of blocks with the places of these in their cycles.
 using PhasedScores = std::vector<std::pair<std::size_t, const storage::BlockScore*>>;

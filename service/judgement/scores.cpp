@@ -6,7 +6,6 @@
 
 namespace reident {
 
-using Eigen::ArrayXd;
 using storage::Block;
 using storage::BlockScore;
 
@@ -54,9 +53,9 @@ double Scores::score(std::size_t q) const {
 
 void Sums::add(const Block& block, const std::vector<double>& square, double weight) {
   const auto array = [](const std::vector<double>& values) {
-    return Eigen::Map<const ArrayXd>(values.data(), std::ssize(values));
+    return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values));
   };
-  if (error.size() == 0) error = y = y_square = ArrayXd::Zero(std::ssize(square));
+  if (error.size() == 0) error = y = y_square = Eigen::ArrayXd::Zero(std::ssize(square));
   weight *= static_cast<double>(block.rows);
   error += weight * array(square);
   y += weight * array(block.output_mean);
@@ -70,7 +69,7 @@ double Sums::mrse_percent() const {
 }
 
 double Sums::fit_percent() const {
-  const ArrayXd share = (error / (y_square - y.square() / rows)).sqrt();
+  const Eigen::ArrayXd share = (error / (y_square - y.square() / rows)).sqrt();
   return share.size() == 0 ? 100 : 100 * (1 - share.maxCoeff<Eigen::PropagateNaN>());
 }
 
@@ -78,7 +77,6 @@ void Comparison::add(std::size_t place, const Block& block, const BlockScore& of
                      const BlockScore& of_other, const std::vector<double>& square_of_other) {
   if (square_of_other.empty()) return;
   Scores::Squares squares;
-  squares.reserve(square_of_other.size());
   for (std::size_t q = 0; q < square_of_other.size(); ++q) {
     const double noise = std::max(std::min(of_one.noise[q], of_other.noise[q]), least_square);
     squares.emplace_back(std::max(of_one.square[q], noise), std::max(square_of_other[q], noise));

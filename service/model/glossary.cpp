@@ -207,7 +207,8 @@ struct Glossary {
       {"worse_before_change", "errs too much before the change",
        "What a change of the equipment did is as much from either side of it: the champion errs by "
        "it on what follows, and a good version on what came before. This one errs more than twice "
-       "as much there. It fits the few days since, and not how the equipment is used.",
+       "as much there, or than another version on both sides. It fits the few days since, or one "
+       "mode of operation, and not how the equipment is used.",
        "Nothing: a later window shows more of it."},
       {"worse_in_regime", "worse in an operating regime",
        "The version is worse than the champion, with confidence, in an operating regime that "

@@ -193,7 +193,8 @@ struct Catalogue {
        "{champion_mrse_percent:.3f} %."},
       {worse_before_change, "worse_before_change", none,
        "Before the last change of the equipment it errs {mrse_percent:.3f} %, more than twice what "
-       "champion {champion:d} errs there or since: {champion_mrse_percent:.3f} %."},
+       "champion {champion:d} errs there or since, or another version there and since together: "
+       "{champion_mrse_percent:.3f} %."},
       {bias_unverified, "bias_unverified", none,
        "Better than champion {champion:d} but for what a biased sensor of {sensors} would show "
        "too; no relation binds it. Waits for an operator's approval."},

@@ -60,7 +60,7 @@ std::string over_regimes(const Finding& finding) {
   std::string text = champion > 0 ? fmt::format("{:.3g} % against {:.3g} %", own, champion) : "";
   const auto [before, change] = finding.before_change_mrse_percent;
   if (before > 0)
-    text += fmt::format("; before the change {:.3g} %, the champion {:.3g} %", before, change);
+    text += fmt::format("; before the change {:.3g} %, explained by it {:.3g} %", before, change);
   return text;
 }
 
@@ -91,7 +91,7 @@ std::vector<Condition> conditions_of(const Finding& finding, std::string_view ob
        {}},
       {"R2",
        "worse in no regime, with confidence; less error over all; before the last change at most "
-       "twice the champion's",
+       "twice what this explains",
        over_regimes(finding),
        {}},
       {"R3",

@@ -13,12 +13,12 @@
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/scores.hpp"
-#include "identification/statistics/level_shift.hpp"
+#include "identification/statistics/shifts.hpp"
 #include "service/cli/identify_data.hpp"
 #include "service/cli/identify_options.hpp"
-#include "service/cli/identify_outliers.hpp"
 #include "service/cli/identify_result.hpp"
 #include "service/cli/identify_screening.hpp"
+#include "service/cli/identify_unexplained.hpp"
 #include "service/cli/verb.hpp"
 #include "service/support/parallel.hpp"
 #include "service/support/phase_timer.hpp"
@@ -160,16 +160,24 @@ void warn_of_shifts(const IdentifyData& data, RowRange rows, const identificatio
   identification::Matrix columns(rows.size(), data.record.u.cols() + y_hat.cols());
   columns << data.record.u.middleRows(rows.begin, rows.size()), y_hat;
   for (Index q = 0; q < y_hat.cols(); ++q) {
-    const auto shift = level_shift(
-        data.record.y.col(q).segment(rows.begin, rows.size()) - y_hat.col(q), columns, segments);
+    const auto shift =
+        shift_of(data.record.y.col(q).segment(rows.begin, rows.size()) - y_hat.col(q), y_hat.col(q),
+                 columns, segments);
     if (!shift) continue;
     const Index row = file_row(data, rows.begin + shift->row);
+    const std::string& output = outcome.outputs[static_cast<std::size_t>(q)];
     outcome.warnings.push_back(fmt::format(
-        "{} is {} by {:.3g} from about row {} on, which the inputs do not explain: its sensor has "
-        "another zero or drifts, or the equipment is another; identify on one side with --identify "
-        "A:B, or name a column that tells them apart with --regime",
-        outcome.outputs[static_cast<std::size_t>(q)], shift->size < 0 ? "lower" : "higher",
-        std::abs(shift->size), row));
+        "{}; identify on one side with --identify A:B, or name a column that tells them apart with "
+        "--regime",
+        shift->of == identification::Shift::Of::mean
+            ? fmt::format("{} is {} by {:.3g} from about row {} on, which the inputs do not "
+                          "explain: its sensor has another zero or drifts, or the equipment is "
+                          "another",
+                          output, shift->size < 0 ? "lower" : "higher", std::abs(shift->size), row)
+            : fmt::format(
+                  "{} answers its inputs by {:.2g} % {} from about row {} on: the equipment "
+                  "is another, or it is not linear",
+                  output, 100 * std::abs(shift->size), shift->size < 0 ? "less" : "more", row)));
   }
 }
 
@@ -282,7 +290,7 @@ int run(const Arguments& arguments) {
   options.output_names = data.outputs;
   auto result = identification::identify(data.record, data.identify, options);
   if (auto* found = std::get_if<Identified>(&result); found && arguments.data.screening)
-    leave_out_outliers(data, *found, options);
+    leave_out_unexplained(data, *found, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
     return print_rejection(*verdict, arguments, data);
 

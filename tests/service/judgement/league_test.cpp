@@ -198,6 +198,24 @@ TEST(League, VersionErrsBeforeAChangeByNoMoreThanTwiceWhatItDidToTheChampion) {
   }
 }
 
+// A mode of operation that no window had: the version knows it alone, another one both.
+TEST(League, VersionThatMissesBeforeAChangeWhatAnotherExplainsOnBothSidesStaysOut) {
+  for (const auto& [before, since, obstacle] :
+       {std::tuple(0.001, 0.02, std::optional(Code::worse_before_change)),
+        {0.04, 0.02, std::nullopt},
+        {0.001, 0.2, std::nullopt}}) {
+    Records records(160);
+    records.champion(varying(0.3), 70)
+        .challenger(varying(0.02), 110)
+        .challenger(varying(since), 156);
+    records.ran_before(*records.league().champion, white(0.001), 44, 60);
+    records.ran_before(records.league().challengers[0], white(0.3), 44, 60);
+    records.ran_before(records.league().challengers[1], white(before), 44, 60);
+    records.league().changed = 62 * length;
+    EXPECT_EQ(records.obstacle(), obstacle) << before << ", " << since;
+  }
+}
+
 TEST(League, NewVersionIsToRunOnTheLastCyclesOfEachRegimeFromBeforeTheChange) {
   Records records(100);
   records.swings(20, 40);

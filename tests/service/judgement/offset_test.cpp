@@ -82,9 +82,9 @@ TEST(Offset, ABlockWithoutTheEffectSaysNothing) {
   fit.add(1, score(0, 4, {}));
   EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(0, 0.03)));
   EXPECT_NEAR(fit.offset(), 2, 0.2);
-  EXPECT_FALSE(has_effect(score(0, 4, {}), 0));
-  EXPECT_TRUE(has_effect(block, 0));
-  EXPECT_FALSE(has_effect(block, 1));
+  EXPECT_FALSE(effect_in(score(0, 4, {}), 0));
+  EXPECT_TRUE(effect_in(block, 0));
+  EXPECT_FALSE(effect_in(block, 1));
 }
 
 }  // namespace

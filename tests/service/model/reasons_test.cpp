@@ -87,8 +87,7 @@ const Example of_a_member[] = {
      "the time, it errs no less than champion 3: MRSE 5.000 % and 4.500 %."},
     {because<Code::worse_before_change>(5.0, 3, 1.5),
      "Before the last change of the equipment it errs 5.000 %, more than twice what champion 3 "
-     "errs "
-     "there or since: 1.500 %."},
+     "errs there or since, or another version there and since together: 1.500 %."},
     {because<Code::bias_unverified>(3, "V_BUS (0.3 too high), I_BUS (2 too low)"),
      "Better than champion 3 but for what a biased sensor of V_BUS (0.3 too high), I_BUS (2 too "
      "low) would show too; no relation binds it. Waits for an operator's approval."},

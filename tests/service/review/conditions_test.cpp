@@ -55,7 +55,7 @@ TEST(Conditions, ErrorsOverTheRegimesAreShownWhereTheyAreKnown) {
   finding.over_regimes_mrse_percent = {2.5, 1.25};
   EXPECT_EQ(found(), "2.5 % against 1.25 %");
   finding.before_change_mrse_percent = {3, 1.5};
-  EXPECT_EQ(found(), "2.5 % against 1.25 %; before the change 3 %, the champion 1.5 %");
+  EXPECT_EQ(found(), "2.5 % against 1.25 %; before the change 3 %, explained by it 1.5 %");
 }
 
 }  // namespace

@@ -122,11 +122,27 @@ TEST_F(IdentifyKinds, RowsThatNothingExplainsAreLeftOut) {
   EXPECT_EQ(json_of(words)["left_out"], json::array());
 }
 
-TEST_F(IdentifyKinds, AnotherZeroAndAnInputThatSaturatesAreNamed) {
-  const auto warnings_of = [this](double shift, double limit) {
+TEST_F(IdentifyKinds, AnOutputAtALimitIsLeftOutThere) {
+  for (const double limit : {1.5, 1.0}) {
+    double x = 0;
+    write("limited.csv", stepped("u,y", 1500, [&](int, double u, double noise) {
+            const double y = std::min(limit, x + 0.01 * noise);
+            x = 0.9 * x + 0.2 * u;
+            return fmt::format("{:.5f}", y);
+          }));
+    const json printed = json_of({"identify", "limited.csv", "--input", "u", "--output", "y"});
+    ASSERT_EQ(printed["left_out"].size(), 1u) << printed["left_out"];
+    EXPECT_EQ(printed["left_out"][0]["fault"], "limit");
+    EXPECT_EQ(printed["order"], 1);
+    EXPECT_NEAR(printed["static_gain"][0][0], 2, 0.04);
+  }
+}
+
+TEST_F(IdentifyKinds, AnotherZeroOrGainAndAnInputThatSaturatesAreNamed) {
+  const auto warnings_of = [this](double shift, double limit, double gain = 1) {
     double x = 0;
     write("odd.csv", stepped("u,y", 900, [&](int row, double u, double noise) {
-            const double y = x + 0.01 * noise + (row >= 400 ? shift : 0);
+            const double y = (row >= 400 ? gain : 1) * x + 0.01 * noise + (row >= 400 ? shift : 0);
             x = 0.9 * x + 0.1 * std::clamp(u, -limit, limit);
             return fmt::format("{:.5f}", y);
           }));
@@ -135,6 +151,8 @@ TEST_F(IdentifyKinds, AnotherZeroAndAnInputThatSaturatesAreNamed) {
   EXPECT_EQ(warnings_of(0, 99), "[]");
   EXPECT_THAT(warnings_of(0.5, 99),
               ::testing::ContainsRegex("y is higher .* from about row (39|40)"));
+  EXPECT_THAT(warnings_of(0, 99, 0.8),
+              ::testing::ContainsRegex("y answers .* less from about row (39|40)"));
   EXPECT_THAT(warnings_of(0, 0.4), HasSubstr("y is not linear in u"));
 }
 

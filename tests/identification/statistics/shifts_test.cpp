@@ -1,4 +1,4 @@
-#include "identification/statistics/level_shift.hpp"
+#include "identification/statistics/shifts.hpp"
 
 #include <cmath>
 #include <utility>
@@ -7,11 +7,12 @@
 
 #include "tests/support/systems.hpp"
 
-namespace reident::identification::level_shift_test {
+namespace reident::identification::shifts_test {
 namespace {
 
-std::optional<LevelShift> found(const Vector& values, const Matrix& columns) {
-  return level_shift(values, columns, {{0, values.size()}});
+/// The last column is what a model makes of the others.
+std::optional<Shift> found(const Vector& values, const Matrix& columns) {
+  return shift_of(values, columns.rightCols(1), columns, {{0, values.size()}});
 }
 
 /// Errors that last: each is so much of the one before.
@@ -22,19 +23,34 @@ Vector errors(test::Noise& noise, Index rows, double memory) {
   return values / std::sqrt(values.squaredNorm() / double(rows));
 }
 
-TEST(LevelShift, AStepIsFoundWhereItIs) {
+TEST(Shift, AStepIsFoundWhereItIs) {
   test::Noise noise(1);
   for (const double size : {3.0, -3.0}) {
     Vector values = errors(noise, 600, 0.5);
     values.tail(400).array() += size;
     const auto shift = found(values, noise.normal(600, 2));
     ASSERT_TRUE(shift);
+    EXPECT_EQ(shift->of, Shift::Of::mean);
     EXPECT_NEAR(double(shift->row), 200, 5);
     EXPECT_NEAR(shift->size, size, 0.4);
   }
 }
 
-TEST(LevelShift, ErrorsThatLastAreNone) {
+TEST(Shift, AnotherGainIsFoundWhereItBegins) {
+  test::Noise noise(5);
+  for (const double size : {0.2, -0.2}) {
+    const Matrix y_hat = 30 * noise.normal(600, 1);
+    Vector values = errors(noise, 600, 0.5);
+    values.tail(250) += size * y_hat.bottomRows(250);
+    const auto shift = found(values, y_hat);
+    ASSERT_TRUE(shift);
+    EXPECT_EQ(shift->of, Shift::Of::gain);
+    EXPECT_NEAR(double(shift->row), 350, 5);
+    EXPECT_NEAR(shift->size, size, 0.02);
+  }
+}
+
+TEST(Shift, ErrorsThatLastAreNone) {
   test::Noise noise(2);
   for (const auto& [memory, most] : {std::pair(0.0, 0), {0.8, 0}, {0.97, 15}}) {
     int steps = 0;
@@ -44,7 +60,7 @@ TEST(LevelShift, ErrorsThatLastAreNone) {
   }
 }
 
-TEST(LevelShift, WhatADriftOrAWrongGainMakesIsNone) {
+TEST(Shift, WhatADriftOrAWrongGainMakesIsNone) {
   test::Noise noise(3);
   Matrix input = noise.normal(600, 1);
   input.bottomRows(300).array() += 5;
@@ -53,7 +69,7 @@ TEST(LevelShift, WhatADriftOrAWrongGainMakesIsNone) {
   EXPECT_FALSE(found(drift + errors(noise, 600, 0), noise.normal(600, 1)));
 }
 
-TEST(LevelShift, FewRowsOrOneValueHaveNone) {
+TEST(Shift, FewRowsOrOneValueHaveNone) {
   test::Noise noise(4);
   Vector values = errors(noise, 50, 0);
   values.tail(25).array() += 9;
@@ -63,4 +79,4 @@ TEST(LevelShift, FewRowsOrOneValueHaveNone) {
 }
 
 }  // namespace
-}  // namespace reident::identification::level_shift_test
+}  // namespace reident::identification::shifts_test
