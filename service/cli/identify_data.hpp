@@ -34,7 +34,7 @@ struct DataRequest {
   bool screening = true;  // leave out rows at which a column shows a fault
 };
 
-/// Rows that are not in the record because a column shows a fault there.
+/// Rows that are not in the record because a column shows a fault there, or a model does.
 struct LeftOut {
   std::string column;
   std::string_view fault;  // its name, for programs

@@ -364,8 +364,8 @@ std::function<int()> declare(CLI::App& command) {
   command.add_option("--validate", arguments->data.validate,
                      "rows C:D to score on (those after the identification rows)");
   command.add_flag("!--no-screening", arguments->data.screening,
-                   "keep rows at which a column shows a fault: a fill value, a stuck sensor, a "
-                   "spike, a burst of noise");
+                   "keep rows at which a column shows a fault (a fill value, a stuck sensor, a "
+                   "spike, a burst of noise), and an output's outliers and rows at its limits");
   add_model_options(command, arguments->model);
   add_reading_options(command, arguments->reading);
   command.add_option("--threads", arguments->threads,
