@@ -1,31 +1,20 @@
 #include "identification/statistics/limits.hpp"
 
 #include <cmath>
-#include <set>
 #include <utility>
 
 namespace reident::identification {
 namespace {
 
-constexpr std::size_t digital_values = 10;
 constexpr Index least_beyond = 10;
 constexpr double beyond_deviations = 2;
 constexpr double nearly_all = 0.9;
 constexpr double least_share_beyond = 0.1, most_share = 1.0 / 3;
 
-bool is_digital(const Vector& values) {
-  std::set<double> different;
-  for (const double value : values) {
-    different.insert(value);
-    if (different.size() > digital_values) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::vector<Limit> limits_of(const Vector& values, const Vector& y_hat) {
-  if (values.size() == 0 || is_digital(values)) return {};
+  if (values.size() == 0) return {};
   Limit greatest{true, values.maxCoeff(), {}}, least{false, values.minCoeff(), {}};
   double squares = 0;
   for (Index row = 0; row < values.size(); ++row) {

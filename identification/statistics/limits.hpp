@@ -20,8 +20,8 @@ struct Limit {
 /// in nine of ten of these the output has that value to the digit. They are at least a tenth of the
 /// rows at the limit: one that inputs at rest lead to, as in eclipse, is none. More than a third of
 /// all rows are how the equipment works. What the output would be is not known (J. Tobin,
-/// "Estimation of relationships for limited dependent variables", Econometrica 26, 1958). Empty for
-/// an output of ten values or less.
+/// "Estimation of relationships for limited dependent variables", Econometrica 26, 1958). For
+/// analog outputs: a digital one is at an end all the time.
 std::vector<Limit> limits_of(const Vector& values, const Vector& y_hat);
 
 }  // namespace reident::identification

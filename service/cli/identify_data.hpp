@@ -31,7 +31,7 @@ struct DataRequest {
   std::optional<std::int64_t> phase_ns;  // of ticks behind the multiples; default: what suits
   std::optional<std::string> identify;   // "A:B", rows of the file
   std::optional<std::string> validate;
-  bool screening = true;  // leave out rows at which a column shows a fault
+  bool screening = true;  // leave rows out (LeftOut)
 };
 
 /// Rows that are not in the record because a column shows a fault there, or a model does.

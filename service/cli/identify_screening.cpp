@@ -23,12 +23,7 @@ constexpr std::size_t digital_values = 10;
 std::vector<bool> analog_channels(const Record& record) {
   std::vector<bool> analog;
   for (const auto* channels : {&record.u, &record.y})
-    for (Index c = 0; c < channels->cols(); ++c) {
-      std::set<double> values;
-      for (Index row = 0; row < record.rows() && values.size() <= digital_values; ++row)
-        values.insert((*channels)(row, c));
-      analog.push_back(values.size() > digital_values);
-    }
+    for (Index c = 0; c < channels->cols(); ++c) analog.push_back(is_analog(channels->col(c)));
   return analog;
 }
 
@@ -56,6 +51,13 @@ std::string_view what(SensorFaultKind kind) {
 }
 
 }  // namespace
+
+bool is_analog(const identification::Vector& column) {
+  std::set<double> values;
+  for (Index row = 0; row < column.size() && values.size() <= digital_values; ++row)
+    values.insert(column(row));
+  return values.size() > digital_values;
+}
 
 std::vector<LeftOut> leave_out_faults(Record& record, const std::vector<std::string>& columns) {
   std::vector<LeftOut> found;

@@ -11,8 +11,11 @@
 
 namespace reident::cli {
 
+/// Whether a column has more than ten values.
+bool is_analog(const identification::Vector& column);
+
 /// Takes the rows at which a column shows a fault out of the record and says which these are, by
-/// column and kind. A column of more than ten values is analog.
+/// column and kind.
 std::vector<LeftOut> leave_out_faults(identification::Record& record,
                                       const std::vector<std::string>& columns);
 

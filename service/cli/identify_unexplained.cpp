@@ -8,6 +8,7 @@
 #include "identification/simulation/free_run.hpp"
 #include "identification/statistics/limits.hpp"
 #include "identification/statistics/outlying_rows.hpp"
+#include "service/cli/identify_screening.hpp"
 
 namespace reident::cli {
 namespace {
@@ -71,7 +72,9 @@ std::vector<LeftOut> unexplained(const IdentifyData& data, const Identified& mod
     const Vector errors = y - y_hat.col(q);
     if (!(errors.norm() > rounding * y.norm())) continue;
     std::vector<bool> is_limited(static_cast<std::size_t>(y.size()), false);
-    for (const auto& limit : identification::limits_of(y, y_hat.col(q))) {
+    const auto limits = is_analog(y) ? identification::limits_of(y, y_hat.col(q))
+                                     : std::vector<identification::Limit>();
+    for (const auto& limit : limits) {
       found.push_back({output, "limit",
                        limit.is_greatest ? "has its greatest value, which the inputs lead beyond,"
                                          : "has its least value, which the inputs lead beyond,",

@@ -23,16 +23,20 @@ Vector errors(test::Noise& noise, Index rows, double memory) {
   return values / std::sqrt(values.squaredNorm() / double(rows));
 }
 
+void expect_shift(const std::optional<Shift>& shift, Shift::Of of, double row, double size,
+                  double within) {
+  ASSERT_TRUE(shift);
+  EXPECT_EQ(shift->of, of);
+  EXPECT_NEAR(double(shift->row), row, 5);
+  EXPECT_NEAR(shift->size, size, within);
+}
+
 TEST(Shift, AStepIsFoundWhereItIs) {
   test::Noise noise(1);
   for (const double size : {3.0, -3.0}) {
     Vector values = errors(noise, 600, 0.5);
     values.tail(400).array() += size;
-    const auto shift = found(values, noise.normal(600, 2));
-    ASSERT_TRUE(shift);
-    EXPECT_EQ(shift->of, Shift::Of::mean);
-    EXPECT_NEAR(double(shift->row), 200, 5);
-    EXPECT_NEAR(shift->size, size, 0.4);
+    expect_shift(found(values, noise.normal(600, 2)), Shift::Of::mean, 200, size, 0.4);
   }
 }
 
@@ -42,11 +46,7 @@ TEST(Shift, AnotherGainIsFoundWhereItBegins) {
     const Matrix y_hat = 30 * noise.normal(600, 1);
     Vector values = errors(noise, 600, 0.5);
     values.tail(250) += size * y_hat.bottomRows(250);
-    const auto shift = found(values, y_hat);
-    ASSERT_TRUE(shift);
-    EXPECT_EQ(shift->of, Shift::Of::gain);
-    EXPECT_NEAR(double(shift->row), 350, 5);
-    EXPECT_NEAR(shift->size, size, 0.02);
+    expect_shift(found(values, y_hat), Shift::Of::gain, 350, size, 0.02);
   }
 }
 
