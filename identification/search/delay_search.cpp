@@ -57,12 +57,13 @@ Vector decay(Index rows, double pole) {
   return x;
 }
 
-/// The delays with which one state for each input explains most of the outputs of a segment, each
-/// input in turn beside the others. They are too long where the equipment has more states.
-Delays delays_of_one_state(const Record& record, const Segment& segment, int most) {
-  const Matrix u = record.u.middleRows(segment.begin, segment.size());
-  const Index m = u.cols(), rows = segment.size() - most;
-  const Matrix y = record.y.middleRows(segment.end - rows, rows);
+/// The delays with which one state for each input explains most of the outputs of a record without
+/// holes, each input in turn beside the others. They are too long where the equipment has more
+/// states.
+Delays delays_of_one_state(const Record& record, int most) {
+  const Matrix& u = record.u;
+  const Index m = u.cols(), rows = record.rows() - most;
+  const Matrix y = record.y.bottomRows(rows);
   Matrix responses = Matrix::Zero(rows, m);
   Delays delays(static_cast<std::size_t>(m), 0);
   const auto take_best = [&](Index input) {
@@ -203,11 +204,10 @@ DelayedFit with_direct(const DelayedFit& fit, const Rows& rows) {
 
 /// Fits with one mode less, which is near 0, and delays that are longer by a row in its place.
 void add_delays_for_poles(std::vector<DelayedFit>& fits, const Rows& rows) {
-  constexpr double near_zero = 0.2;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const Dynamics dynamics{fits[i].fit.model.A, fits[i].fit.model.C};
     const Index order = dynamics.A.rows();
-    if (order == 0 || eigenvalues(dynamics.A).cwiseAbs().minCoeff() > near_zero) continue;
+    if (order == 0 || eigenvalues(dynamics.A).cwiseAbs().minCoeff() > pole_near_zero) continue;
     const std::size_t inputs = fits[i].delays.size();
     for (std::size_t longer = 0; longer < (inputs > 1 ? inputs + 1 : 1); ++longer) {
       Delays delays = fits[i].delays;  // of one input, and of all
@@ -279,11 +279,10 @@ Index affordable_scan(int most, Index m, Index p, double budget) {
   return std::min(most_scanned, static_cast<Index>(budget / of_row));
 }
 
-/// The delays of one state for each input, of the last rows that the budget lasts for.
-Delays first_look(const Record& record, Segment segment, int most, double budget) {
+/// The delays of one state for each input, of the last ticks that the budget lasts for.
+Delays first_look(const Record& record, const std::vector<Segment>& run, int most, double budget) {
   const Index count = affordable_scan(most, record.u.cols(), record.y.cols(), budget) + most;
-  segment.begin = std::max(segment.begin, segment.end - count);
-  return delays_of_one_state(record, segment, most);
+  return delays_of_one_state(last_ticks(record, run, count), most);
 }
 
 /// Rows that the budget lasts for with descents of these orders.
@@ -344,26 +343,24 @@ std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange ra
   const Delays none(static_cast<std::size_t>(m), 0);
   const double budget = share_of_budget * options.search_budget;
   const Index end = rows.end - options.tune_rows;
-  const std::vector<Segment> segments =
-      segments_within(record, {std::max(rows.begin, end - most_fitted), end});
-  if (segments.empty()) return none;
-  const Segment longest =
-      *std::max_element(segments.begin(), segments.end(),
-                        [](const Segment& a, const Segment& b) { return a.size() < b.size(); });
-  const int limit = std::min(range.limit, static_cast<int>(longest.size() / 3));
+  const std::vector<Segment> run =
+      longest_run(record, {std::max(rows.begin, end - most_fitted), end});
+  if (run.empty()) return none;
+  const auto ticks = run.back().end_tick() - run.front().first_tick;
+  const int limit = static_cast<int>(std::min<std::int64_t>(range.limit, ticks / 3));
   int most = std::min(range.most, limit);
-  Delays start = first_look(record, longest, most, budget);
+  Delays start = first_look(record, run, most, budget);
   // The best of a range that lies at its end is not the best there is.
   while (most < limit && std::ranges::find(start, most) != start.end()) {
     most = std::min(2 * most, limit);
-    start = first_look(record, longest, most, budget);
+    start = first_look(record, run, most, budget);
   }
   if (start == none) return none;
 
   const std::vector<int> orders = affordable_orders(m, p, options, budget);
   if (orders.empty()) return none;
   const Index count = std::clamp(rows_for(orders, m, p, budget), least_rows, most_fitted);
-  const RowRange around{std::max(rows.begin, longest.end - count - most), longest.end};
+  const RowRange around{std::max(rows.begin, end - count - most), end};
   const Rows fitted{record, around, most};
   std::vector<DelayedFit> fits;
   for (const int order : orders) {

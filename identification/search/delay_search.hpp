@@ -9,6 +9,9 @@
 
 namespace reident::identification {
 
+/// A pole below may stand in place of a row of delay.
+inline constexpr double pole_near_zero = 0.2;
+
 /// How far delays are looked for, in rows: up to `most`, and on to `limit` as long as the rows show
 /// one at the end of what has been looked at.
 struct DelayRange {
@@ -17,9 +20,10 @@ struct DelayRange {
 };
 
 /// Returns delays in rows, one for each input, in the range and at most a third of the longest
-/// segment: those of the simplest model that nothing refutes, of the model `without` delays, where
-/// there is one, and of models of few states with delays and without. All are zero where it has
-/// none. Spends a sixth of the search budget for each of its two steps.
+/// run of segments (longest_run(), delays.hpp): those of the simplest model that nothing refutes,
+/// of the model `without` delays, where there is one, and of models of few states with delays and
+/// without. All are zero where it has none. Spends a sixth of the search budget for each of its two
+/// steps.
 std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange range,
                               const Identified* without, const IdentifyOptions& options);
 

@@ -1,31 +1,116 @@
 #include "identification/search/delays.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <numeric>
+#include <utility>
+
+#include "identification/samples/tick_ranges.hpp"
+#include "identification/simulation/hole_bridging.hpp"
 
 namespace reident::identification {
+namespace {
+
+/// A channel at ticks that ascend, with a straight line through holes.
+class ThroughHoles {
+ public:
+  /// `segment` is the first of those that follow each other in an array.
+  ThroughHoles(Eigen::Ref<const Vector> values, const Segment* segment)
+      : values_(values), segment_(segment) {}
+
+  /// Requires a tick from the first one of the first segment to the last one of the last.
+  double at(std::int64_t tick) {
+    while (tick >= segment_->end_tick()) ++segment_;
+    if (tick >= segment_->first_tick)
+      return values_(segment_->begin + (tick - segment_->first_tick));
+    const Segment& before = *(segment_ - 1);
+    const double first = values_(before.end - 1), last = values_(segment_->begin);
+    return first + (last - first) * double(tick - before.end_tick() + 1) /
+                       double(segment_->first_tick - before.end_tick() + 1);
+  }
+
+ private:
+  Eigen::Ref<const Vector> values_;
+  const Segment* segment_;
+};
+
+}  // namespace
+
+std::vector<Segment> longest_run(const Record& record, RowRange rows) {
+  std::vector<Segment> longest, run;
+  Index most = 0, size = 0;
+  for (const Segment& segment : segments_within(record, rows)) {
+    if (!run.empty() && !is_bridged(record, run.back(), segment)) {
+      run.clear();
+      size = 0;
+    }
+    run.push_back(segment);
+    size += segment.size();
+    if (size < most) continue;
+    most = size;
+    longest = run;
+  }
+  return longest;
+}
+
+Record last_ticks(const Record& record, const std::vector<Segment>& run, Index most) {
+  const std::int64_t begin = std::max(run.front().first_tick, run.back().end_tick() - most);
+  const Index ticks = run.back().end_tick() - begin;
+  const auto columns = [&](const Matrix& channels) {
+    Matrix result(ticks, channels.cols());
+    for (Index c = 0; c < channels.cols(); ++c) {
+      ThroughHoles channel(channels.col(c), run.data());
+      for (Index k = 0; k < ticks; ++k) result(k, c) = channel.at(begin + k);
+    }
+    return result;
+  };
+  return contiguous_record(record.period_s, columns(record.u), columns(record.y));
+}
 
 Record delayed(const Record& record, RowRange rows, const std::vector<int>& delays, int left_out) {
   assert(static_cast<Index>(delays.size()) == record.u.cols());
-  Record result{record.period_s, {}, {}, {}};
-  Index total = 0;
   const std::vector<Segment> parts = segments_within(record, rows);
-  for (const Segment& part : parts)
-    if (part.size() > left_out) total += part.size() - left_out;
-  result.u.resize(total, record.u.cols());
-  result.y.resize(total, record.y.cols());
-  Index at = 0;
-  for (const Segment& part : parts) {
-    const Index count = part.size() - left_out, begin = part.begin + left_out;
-    if (count <= 0) continue;
+  Record result{record.period_s,
+                Matrix(rows.size(), record.u.cols()),
+                Matrix(rows.size(), record.y.cols()),
+                {}};
+  Index total = 0;
+  std::int64_t begin = 0;  // of the run of segments
+  std::vector<ThroughHoles> inputs;
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    const Segment& part = parts[s];
+    if (s == 0 || !is_bridged(record, parts[s - 1], part)) {
+      begin = part.first_tick;
+      inputs.clear();
+      for (Index i = 0; i < record.u.cols(); ++i) inputs.emplace_back(record.u.col(i), &part);
+    }
+    const Index missing = static_cast<Index>(
+        std::clamp<std::int64_t>(begin + left_out - part.first_tick, 0, part.size()));
+    const Index count = part.size() - missing, from = part.begin + missing;
+    if (count == 0) continue;
+    const std::int64_t first_tick = part.first_tick + missing;
     for (Index i = 0; i < record.u.cols(); ++i)
-      result.u.col(i).segment(at, count) =
-          record.u.col(i).segment(begin - delays[static_cast<std::size_t>(i)], count);
-    result.y.middleRows(at, count) = record.y.middleRows(begin, count);
-    result.segments.push_back({at, at + count, part.first_tick + left_out});
-    at += count;
+      for (Index k = 0; k < count; ++k)
+        result.u(total + k, i) = inputs[static_cast<std::size_t>(i)].at(
+            first_tick + k - delays[static_cast<std::size_t>(i)]);
+    result.y.middleRows(total, count) = record.y.middleRows(from, count);
+    result.segments.push_back({total, total + count, first_tick});
+    total += count;
   }
+  result.u.conservativeResize(total, Eigen::NoChange);
+  result.y.conservativeResize(total, Eigen::NoChange);
   return result;
+}
+
+Record delayed_where_known(const Record& record, RowRange rows, const std::vector<int>& delays) {
+  const std::vector<Segment> parts = segments_within(record, rows);
+  std::vector<TickRange> unknown;
+  for (std::size_t s = 1; s < parts.size(); ++s)
+    for (const int delay : delays)
+      unknown.push_back({parts[s - 1].end_tick() + delay, parts[s].first_tick + delay});
+  return without(delayed(record, rows, delays, *std::max_element(delays.begin(), delays.end())),
+                 united(std::move(unknown)));
 }
 
 StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vector<int>& delays) {

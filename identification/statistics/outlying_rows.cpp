@@ -11,11 +11,11 @@ namespace {
 constexpr double deviations = 8;
 constexpr double deviation_of_median = 1.4826;  // of normal distances
 constexpr double most_rows = 0.1;
-constexpr double least_square_share = 0.5;
 
 }  // namespace
 
-std::vector<Index> outlying_rows(const Vector& values, const std::vector<RowRange>& segments) {
+std::vector<Index> outlying_rows(const Vector& values, const std::vector<RowRange>& segments,
+                                 double least_square_share) {
   std::vector<std::pair<Index, double>> distances;
   for (const RowRange& segment : segments)
     for (Index row = segment.begin + 2; row + 2 < segment.end; ++row) {
@@ -32,7 +32,8 @@ std::vector<Index> outlying_rows(const Vector& values, const std::vector<RowRang
   if (sorted.empty()) return {};
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = deviations * deviation_of_median * *middle;
+  const bool most_are_the_median = double(sorted.size()) <= most_rows * double(distances.size());
+  const double limit = most_are_the_median ? 0 : deviations * deviation_of_median * *middle;
   std::vector<Index> rows;
   double beyond = 0, all = 0;
   for (const auto& [row, distance] : distances) {

@@ -288,9 +288,9 @@ int run(const Arguments& arguments) {
   options.input_names = data.inputs;
   options.regime_inputs = data.regime_inputs;
   options.output_names = data.outputs;
-  auto result = identification::identify(data.record, data.identify, options);
-  if (auto* found = std::get_if<Identified>(&result); found && arguments.data.screening)
-    leave_out_unexplained(data, *found, options);
+  auto result = arguments.data.screening
+                    ? identify_explained(data, options)
+                    : identification::identify(data.record, data.identify, options);
   if (const auto* verdict = std::get_if<Verdict>(&result))
     return print_rejection(*verdict, arguments, data);
 

@@ -137,6 +137,53 @@ StateSpaceModel of_one_pole(double pole) {
   return of_poles(Vector::Constant(1, pole), Vector::Constant(1, 1));
 }
 
+/// The record without this share of its rows, chosen at random.
+Record with_holes(const Record& record, double share, test::Noise& noise) {
+  std::vector<TickRange> ticks;
+  for (Index row = 0; row < record.rows(); ++row)
+    if (noise.uniform() < share) ticks.push_back({row, row + 1});
+  return without(record, united(std::move(ticks)));
+}
+
+TEST(Delays, InputsAreKnownBehindShortHoles) {
+  const Vector u = Vector::LinSpaced(300, 0, 299);
+  test::Noise noise(1);
+  const Record whole = contiguous_record(1, u.replicate(1, 2), u);
+  const Record holed = with_holes(whole, 0.1, noise);
+  const Record shifted = delayed(holed, holed.all(), {25, 0}, 30);
+  EXPECT_EQ(shifted.rows(), holed.rows() - first_row_at(holed, 30));
+  EXPECT_LT((shifted.u.col(0).array() - (shifted.y.array() - 25)).abs().maxCoeff(), 1e-9);
+  EXPECT_EQ(shifted.u.col(1), shifted.y);
+  EXPECT_EQ(shifted.segments.front().first_tick, 30);
+  const Record known = delayed_where_known(holed, holed.all(), {25, 0});
+  for (Index row = 0; row < known.rows(); ++row) {
+    const std::int64_t tick = tick_of_row(known, row);
+    EXPECT_EQ(known.u(row, 0), double(tick - 25));
+    const auto has = [&](std::int64_t one) {
+      return tick_of_row(holed, first_row_at(holed, one)) == one;
+    };
+    EXPECT_TRUE(has(tick) && has(tick - 25));
+  }
+  EXPECT_GT(known.rows(), 200);
+  // Behind a long one they are not: rows are left out anew.
+  const Record parted = without(whole, {{100, 200}});
+  const Record rest = delayed(parted, parted.all(), {25, 0}, 30);
+  EXPECT_EQ(rest.rows(), 70 + 70);
+  EXPECT_EQ(rest.segments.back().first_tick, 230);
+}
+
+TEST(Delays, OneIsFoundWhereRowsAreMissing) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    test::Noise noise(seed);
+    Vector u = random_steps(noise, 2000, 20);
+    u += 0.1 * noise.normal(u.size(), 1);
+    const Record record = after_delay(of_one_pole(0.983), u, 25, 0.01, noise);
+    const Identified found = identified(with_holes(record, 0.04, noise));
+    EXPECT_THAT(found.input_delays, ElementsAre(25)) << seed;
+    EXPECT_EQ(found.recipe.order, 1) << seed;
+  }
+}
+
 TEST(Delays, OneBeyondTheUsualRangeIsFound) {
   // The range of 400 rows is 50, that of 1,300 rows is 60.
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -254,19 +301,6 @@ TEST(Delays, PolesAreNotTakenForADelay) {
   }
   EXPECT_LE(invented, records / 100);
   RecordProperty("invented", std::to_string(invented));
-}
-
-TEST(Delays, RowsBeforeTheLongestDelayAreLeftOutOfEachSegment) {
-  test::Noise noise(2);
-  const Record record =
-      test::with_gap(contiguous_record(1, noise.normal(30, 2), noise.normal(30, 1)), 10, 13);
-  const Record shifted = delayed(record, record.all(), {2, 0}, 3);
-  ASSERT_EQ(shifted.rows(), 27 - 2 * 3);
-  EXPECT_THAT(shifted.segments, ElementsAre(Segment{0, 7, 3}, Segment{7, 21, 16}));
-  EXPECT_EQ(shifted.u(0, 0), record.u(1, 0));
-  EXPECT_EQ(shifted.u(7, 0), record.u(11, 0));
-  EXPECT_EQ(shifted.u.col(1).head(7), record.u.col(1).segment(3, 7));
-  EXPECT_EQ(shifted.y.col(0).head(7), record.y.col(0).segment(3, 7));
 }
 
 TEST(Delays, AreFoundAndBecomeStates) {

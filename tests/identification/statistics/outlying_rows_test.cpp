@@ -58,6 +58,21 @@ TEST(OutlyingRows, AThirdOfTheRowsIsHowTheErrorsAre) {
   EXPECT_TRUE(outlying_rows(values, {{0, rows}}).empty());
 }
 
+TEST(OutlyingRows, WhereNearlyAllAreTheMedianAnyOtherIsOff) {
+  Vector values = Vector::Zero(rows);
+  for (Index t = 0; t < rows; ++t) values(t) = t % 80 < 40 ? 0 : 1;
+  for (const Index t : {100, 350}) values(t) += 5;
+  EXPECT_THAT(outlying_rows(values, {{0, rows}}), testing::ElementsAre(100, 350));
+}
+
+TEST(OutlyingRows, AShareOfTheSquaresIsAskedOrNot) {
+  test::Noise noise(6);
+  Vector values = errors(noise, 0);
+  values(100) += 15;
+  EXPECT_TRUE(outlying_rows(values, {{0, rows}}).empty());
+  EXPECT_THAT(outlying_rows(values, {{0, rows}}, 0), testing::ElementsAre(100));
+}
+
 TEST(OutlyingRows, StepsAndFewRowsHaveNone) {
   Vector values = Vector::Zero(rows);
   values.tail(rows / 2).setConstant(100);

@@ -122,6 +122,35 @@ TEST_F(IdentifyKinds, RowsThatNothingExplainsAreLeftOut) {
   EXPECT_EQ(json_of(words)["left_out"], json::array());
 }
 
+// More of them than screens take for spikes, and alike, as pulses of equipment are.
+TEST_F(IdentifyKinds, SpikesOfAnInputAreLeftOutWhereTheOutputDoesNotFollowThem) {
+  for (const bool follows : {false, true}) {
+    double x = 0;
+    std::mt19937_64 random(6);
+    int spikes = 0;
+    write("spikes.csv", stepped("true,u,y", 900, [&](int, double u, double noise) {
+            const bool is_spike = random() % 31 == 0;
+            spikes += is_spike ? 1 : 0;
+            const double shown = u + (is_spike ? 4 : 0);
+            const double y = x + 0.01 * noise;
+            x = 0.9 * x + 0.2 * (follows ? shown : u);
+            return fmt::format("{:.5f},{:.5f}", shown, y);
+          }));
+    const json printed = json_of({"identify", "spikes.csv", "--input", "u", "--output", "y"});
+    EXPECT_EQ(printed["order"], 1) << follows;
+    EXPECT_NEAR(printed["static_gain"][0][0], 2, 0.02) << follows;
+    int rows = 0;
+    for (const json& one : printed["left_out"]) {
+      EXPECT_EQ(one["column"], "u");
+      EXPECT_EQ(one["fault"], "spike");
+      for (const json& range : one["rows"]) rows += range[1].get<int>() - range[0].get<int>();
+    }
+    // A row of a step with a spike beside it may look like one too.
+    EXPECT_GE(rows, follows ? 0 : spikes);
+    EXPECT_LE(rows, follows ? 0 : spikes + 5);
+  }
+}
+
 TEST_F(IdentifyKinds, AnOutputAtALimitIsLeftOutThere) {
   for (const double limit : {1.5, 1.0}) {
     double x = 0;
