@@ -125,10 +125,10 @@ std::vector<LeftOut> unexplained_outputs(const IdentifyData& data, const Identif
   for (Index q = 0; q < all.cols(); ++q) {
     const std::string& output = data.outputs[static_cast<std::size_t>(q)];
     const Vector y = all.col(q), errors = all_errors.col(q);
-    if (!(errors.norm() > rounding * y.norm())) continue;
+    if (!is_analog(y) || !(errors.norm() > rounding * y.norm())) continue;
     std::vector<bool> is_limited(static_cast<std::size_t>(y.size()), false);
-    const auto limits = model && is_analog(y) ? identification::limits_of(y, y - errors)
-                                              : std::vector<identification::Limit>();
+    const auto limits =
+        model ? identification::limits_of(y, y - errors) : std::vector<identification::Limit>();
     for (const auto& limit : limits) {
       leave_out(found, data,
                 {output,
