@@ -95,7 +95,8 @@ Delays delays_of_one_state(const Record& record, int most) {
   return delays;
 }
 
-/// The rows, standardised, with whatever delays of at most `most`: of each segment without so many.
+/// The rows, standardised, with whatever delays of at most `most`: of each run of segments without
+/// so many.
 struct Rows {
   const Record& record;
   RowRange range;
@@ -360,7 +361,8 @@ std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange ra
   const std::vector<int> orders = affordable_orders(m, p, options, budget);
   if (orders.empty()) return none;
   const Index count = std::clamp(rows_for(orders, m, p, budget), least_rows, most_fitted);
-  const RowRange around{std::max(rows.begin, end - count - most), end};
+  const Index last = run.back().end;
+  const RowRange around{std::max(rows.begin, last - count - most), last};
   const Rows fitted{record, around, most};
   std::vector<DelayedFit> fits;
   for (const int order : orders) {

@@ -12,6 +12,8 @@
 namespace reident::identification {
 namespace {
 
+constexpr double most_unknown = 1.0 / 8;  // of the rows: to leave out more cuts the rest to pieces
+
 /// A channel at ticks that ascend, with a straight line through holes.
 class ThroughHoles {
  public:
@@ -103,14 +105,15 @@ Record delayed(const Record& record, RowRange rows, const std::vector<int>& dela
   return result;
 }
 
-Record delayed_where_known(const Record& record, RowRange rows, const std::vector<int>& delays) {
+Record delayed_to_identify(const Record& record, RowRange rows, const std::vector<int>& delays) {
   const std::vector<Segment> parts = segments_within(record, rows);
   std::vector<TickRange> unknown;
   for (std::size_t s = 1; s < parts.size(); ++s)
     for (const int delay : delays)
       unknown.push_back({parts[s - 1].end_tick() + delay, parts[s].first_tick + delay});
-  return without(delayed(record, rows, delays, *std::max_element(delays.begin(), delays.end())),
-                 united(std::move(unknown)));
+  Record all = delayed(record, rows, delays, *std::max_element(delays.begin(), delays.end()));
+  Record known = without(all, united(std::move(unknown)));
+  return double(known.rows()) >= (1 - most_unknown) * double(all.rows()) ? known : all;
 }
 
 StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vector<int>& delays) {

@@ -23,9 +23,10 @@ Record last_ticks(const Record& record, const std::vector<Segment>& run, Index m
 /// each longer hole. Requires m delays from 0 to `left_out`.
 Record delayed(const Record& record, RowRange rows, const std::vector<int>& delays, int left_out);
 
-/// Returns the rows with such inputs, the longest delay left out, without those of which an input
-/// is in a hole. Requires a delay for each input, and one at least.
-Record delayed_where_known(const Record& record, RowRange rows, const std::vector<int>& delays);
+/// Returns the rows with such inputs, the longest delay left out. Those of which an input is in a
+/// hole are left out too, where they are at most an eighth. Requires a delay for each input, and
+/// one at least.
+Record delayed_to_identify(const Record& record, RowRange rows, const std::vector<int>& delays);
 
 /// Returns the model of the inputs as they are. Delays' states come last; K does not correct them.
 StateSpaceModel with_delay_states(const StateSpaceModel& model, const std::vector<int>& delays);

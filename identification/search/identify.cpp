@@ -48,7 +48,7 @@ namespace {
 IdentifyResult identify_delayed(const Record& record, RowRange rows, const std::vector<int>& delays,
                                 const IdentifyOptions& options) {
   const int longest = *std::max_element(delays.begin(), delays.end());
-  const Record shifted = delayed_where_known(record, rows, delays);
+  const Record shifted = delayed_to_identify(record, rows, delays);
   IdentifyResult result = run_pipeline(shifted, shifted.all(), options, nullptr);
   auto* found = std::get_if<Identified>(&result);
   if (!found || longest == 0) return result;
@@ -64,14 +64,14 @@ IdentifyResult identify_delayed(const Record& record, RowRange rows, const std::
   return result;
 }
 
-/// The model with one mode less, which is near 0, and delays that are longer by a row in its place:
-/// of one input, or of all. Absent where rows held out do not agree.
-std::optional<Identified> longer_delay_for_a_pole(const Identified& found, const Record& record,
-                                                  RowRange rows, IdentifyOptions options) {
+/// Takes a model with one mode less, which is near 0, and delays that are longer by a row in its
+/// place: of one input, or of all. Returns whether rows held out agree to one.
+bool replace_pole_by_delay(Identified& found, const Record& record, RowRange rows,
+                           IdentifyOptions options) {
   const Matrix A = without_delay_states(found.model, found.input_delays).A;
   if (options.order || A.rows() <= options.min_order ||
       eigenvalues(A).cwiseAbs().minCoeff() > pole_near_zero)
-    return std::nullopt;
+    return false;
   options.order = static_cast<int>(A.rows()) - 1;
   const int most = options.max_input_delay.value_or(std::numeric_limits<int>::max());
   const std::size_t inputs = found.input_delays.size();
@@ -80,11 +80,15 @@ std::optional<Identified> longer_delay_for_a_pole(const Identified& found, const
     for (std::size_t i = 0; i < inputs; ++i) delays[i] += longer == i || longer == inputs ? 1 : 0;
     if (*std::max_element(delays.begin(), delays.end()) > most) continue;
     IdentifyResult result = identify_delayed(record, rows, delays, options);
-    if (auto* fewer = std::get_if<Identified>(&result);
-        fewer && held_out_rows_agree(*fewer, found, record, rows, options))
-      return std::move(*fewer);
+    auto* fewer = std::get_if<Identified>(&result);
+    if (!fewer) continue;
+    found.search_work += fewer->search_work;
+    if (!held_out_rows_agree(*fewer, found, record, rows, options)) continue;
+    fewer->search_work = found.search_work;
+    found = std::move(*fewer);
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 /// Names the inputs that act after more samples than delays may have; empty where none does.
@@ -137,9 +141,7 @@ IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
     found->search_work += without->search_work;
     if (!held_out_rows_agree(*found, *without, record, rows, options)) return result;
   }
-  while (auto fewer = longer_delay_for_a_pole(*found, record, rows, options)) {
-    fewer->search_work += found->search_work;
-    *found = *std::move(fewer);
+  while (replace_pole_by_delay(*found, record, rows, options)) {
   }
   if (!too_long.empty()) tell(with, too_long);
   return with;

@@ -1,9 +1,7 @@
 #include "identification/statistics/followed.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "identification/statistics/autoregression.hpp"
 
@@ -11,6 +9,7 @@ namespace reident::identification {
 namespace {
 
 constexpr double alike = 1e-12;  // of effects
+constexpr Index blocks = 20;
 
 /// What the values before in the same segment do not explain.
 Vector without_past(const Vector& values, const Vector& past,
@@ -21,6 +20,17 @@ Vector without_past(const Vector& values, const Vector& past,
       for (Index k = 0; k < std::min(past.size(), row - segment.begin); ++k)
         rest(row) -= past(k) * values(row - 1 - k);
   return rest;
+}
+
+/// Where clusters begin: at each range of the rows, and at so many places elsewhere.
+std::vector<Index> cluster_begins(const std::vector<Index>& rows, Index all) {
+  std::vector<Index> begins;
+  for (Index i = 0; i < blocks; ++i) begins.push_back(i * all / blocks);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (i == 0 || rows[i] > rows[i - 1] + 1) begins.push_back(rows[i]);
+  std::sort(begins.begin(), begins.end());
+  begins.erase(std::unique(begins.begin(), begins.end()), begins.end());
+  return begins;
 }
 
 }  // namespace
@@ -35,7 +45,8 @@ std::array<Followed, 2> followed(const Matrix& errors, const std::array<Matrix, 
   std::array<Pairs, 2> squares{products, products};
   for (Index q = 0; q < errors.cols(); ++q) {
     const Vector past = burg_coefficients(errors.col(q), segments);
-    const Vector left = without_past(errors.col(q), past, segments);
+    Vector left = without_past(errors.col(q), past, segments);
+    left.array() -= left.mean();
     Pairs moved(errors.rows(), 2);
     for (Index i = 0; i < 2; ++i)
       moved.col(i) = without_past(effects[static_cast<std::size_t>(i)].col(q), past, segments);
@@ -56,19 +67,21 @@ std::array<Followed, 2> followed(const Matrix& errors, const std::array<Matrix, 
   inverse /= determinant;
   const Pair coefficients = inverse * products.colwise().sum().transpose();
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  const auto add_cluster = [&](Index begin, Index end) {
-    Pair score = products.middleRows(begin, end - begin).colwise().sum().transpose();
+  const std::vector<Index> begins = cluster_begins(rows, errors.rows());
+  for (std::size_t cluster = 0; cluster < begins.size(); ++cluster) {
+    const Index begin = begins[cluster];
+    const Index size = (cluster + 1 < begins.size() ? begins[cluster + 1] : errors.rows()) - begin;
+    Pair score = products.middleRows(begin, size).colwise().sum().transpose();
     for (std::size_t i = 0; i < 2; ++i)
-      score -= coefficients(Index(i)) *
-               squares[i].middleRows(begin, end - begin).colwise().sum().transpose();
+      score -=
+          coefficients(Index(i)) * squares[i].middleRows(begin, size).colwise().sum().transpose();
     spread += score * score.transpose();
-  };
-  Index begin = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (i == 0 || rows[i] > rows[i - 1] + 1) add_cluster(std::exchange(begin, rows[i]), rows[i]);
-  add_cluster(begin, errors.rows());
-  const Pair variances =
-      (inverse * spread * inverse).diagonal().cwiseMax(inverse.diagonal() / double(errors.rows()));
+  }
+  const Pair of_white_errors = inverse.diagonal() / double(errors.rows());
+  const Pair of_clusters = (inverse * spread * inverse).diagonal();
+  // Few rows hold all that there is of the first share: then their own cluster says nothing.
+  const double misfit = std::max(1.0, of_clusters(1) / of_white_errors(1));
+  const Pair variances = of_clusters.cwiseMax(misfit * of_white_errors);
   return {Followed{1 + coefficients(0), std::sqrt(variances(0))},
           Followed{1 + coefficients(1), std::sqrt(variances(1))}};
 }

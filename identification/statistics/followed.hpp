@@ -20,9 +20,11 @@ struct Followed {
 /// share is one more than the coefficient of the regression of the errors on the effects, where all
 /// are less what the errors before explain (burg_coefficients()), and outputs are weighed by what
 /// is left. The standard errors are those of clusters (K.-Y. Liang and S. L. Zeger, "Longitudinal
-/// data analysis using generalized linear models", Biometrika 73, 1986), a cluster from a range of
-/// `rows`, which ascend, to the next; or those of white errors where they are larger. Shares of 1
-/// where the effects cannot be told from each other or from nothing.
+/// data analysis using generalized linear models", Biometrika 73, 1986), which begin with each
+/// range of `rows`, which ascend, and in 20 other places. They are no less than those of white
+/// errors, times what the second share's are more than its own of white errors. Shares of 1 where
+/// the effects cannot be told from each other or from nothing. Requires outputs of which each has
+/// errors.
 std::array<Followed, 2> followed(const Matrix& errors, const std::array<Matrix, 2>& effects,
                                  const std::vector<Index>& rows,
                                  const std::vector<RowRange>& segments);

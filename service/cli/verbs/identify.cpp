@@ -211,8 +211,9 @@ int print_rejection(const Verdict& verdict, const Arguments& arguments, const Id
     advice += "; these are the first two thirds of the file: --identify 0:ROWS takes more of them";
   if (verdict.code == identification::VerdictCode::too_few_samples &&
       !arguments.model.delays.empty())
-    advice += fmt::format("; --delay {} takes as many rows from the begin of each stretch",
-                          fmt::join(arguments.model.delays, " "));
+    advice += fmt::format(
+        "; --delay {} takes as many rows from the begin, and those whose inputs would be in a gap",
+        fmt::join(arguments.model.delays, " "));
   const std::vector<std::string> left_out = left_out_sentences(data);
   if (arguments.json) {
     const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},

@@ -128,27 +128,48 @@ TEST_F(IdentifyKinds, SpikesOfAnInputAreLeftOutWhereTheOutputDoesNotFollowThem) 
     double x = 0;
     std::mt19937_64 random(6);
     int spikes = 0;
-    write("spikes.csv", stepped("true,u,y", 900, [&](int, double u, double noise) {
+    write("spikes.csv", stepped("true,u,y,still", 900, [&](int, double u, double noise) {
             const bool is_spike = random() % 31 == 0;
             spikes += is_spike ? 1 : 0;
             const double shown = u + (is_spike ? 4 : 0);
             const double y = x + 0.01 * noise;
             x = 0.9 * x + 0.2 * (follows ? shown : u);
-            return fmt::format("{:.5f},{:.5f}", shown, y);
+            return fmt::format("{:.5f},{:.5f},0.1", shown, y);
           }));
-    const json printed = json_of({"identify", "spikes.csv", "--input", "u", "--output", "y"});
-    EXPECT_EQ(printed["order"], 1) << follows;
-    EXPECT_NEAR(printed["static_gain"][0][0], 2, 0.02) << follows;
-    int rows = 0;
-    for (const json& one : printed["left_out"]) {
-      EXPECT_EQ(one["column"], "u");
-      EXPECT_EQ(one["fault"], "spike");
-      for (const json& range : one["rows"]) rows += range[1].get<int>() - range[0].get<int>();
+    for (const Strings& more :
+         {Strings{}, {"still"}, {"--identify", "300:900", "--validate", "0:300"}}) {
+      Strings words = {"identify", "spikes.csv", "--input", "u", "--output", "y"};
+      words.insert(words.end(), more.begin(), more.end());
+      const json printed = json_of(words);
+      EXPECT_EQ(printed["order"], 1);
+      EXPECT_NEAR(printed["static_gain"][0][0], 2, 0.02);
+      int rows = 0;
+      for (const json& one : printed["left_out"]) {
+        EXPECT_EQ(one["column"], "u");
+        EXPECT_EQ(one["fault"], "unfollowed");
+        for (const json& range : one["rows"]) rows += range[1].get<int>() - range[0].get<int>();
+      }
+      // A row of a step with a spike beside it may look like one too.
+      EXPECT_GE(rows, follows ? 0 : spikes);
+      EXPECT_LE(rows, follows ? 0 : spikes + 5);
     }
-    // A row of a step with a spike beside it may look like one too.
-    EXPECT_GE(rows, follows ? 0 : spikes);
-    EXPECT_LE(rows, follows ? 0 : spikes + 5);
   }
+}
+
+TEST_F(IdentifyKinds, APlantOfAHigherOrderFollowsItsPulses) {
+  double x[3] = {};
+  std::mt19937_64 random(7);
+  write("slow.csv", stepped("steps,u,y", 900, [&](int, double u, double noise) {
+          const double shown = u + (random() % 31 == 0 ? 6 : 0);
+          const std::string row = fmt::format("{:.5f},{:.5f}", shown, x[2] + 0.01 * noise);
+          x[2] = 0.8 * x[2] + 0.2 * x[1];
+          x[1] = 0.8 * x[1] + 0.2 * x[0];
+          x[0] = 0.8 * x[0] + 0.2 * shown;
+          return row;
+        }));
+  const json printed =
+      json_of({"identify", "slow.csv", "--input", "u", "--output", "y", "--order", "1"});
+  EXPECT_EQ(printed["left_out"], json::array());
 }
 
 TEST_F(IdentifyKinds, AnOutputAtALimitIsLeftOutThere) {
