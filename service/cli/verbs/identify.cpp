@@ -366,7 +366,8 @@ std::function<int()> declare(CLI::App& command) {
                      "rows C:D to score on (those after the identification rows)");
   command.add_flag("!--no-screening", arguments->data.screening,
                    "keep rows at which a column shows a fault (a fill value, a stuck sensor, a "
-                   "spike, a burst of noise), and an output's outliers and rows at its limits");
+                   "spike, a burst of noise), an output's outliers and rows at its limits, and "
+                   "an input's that the outputs hardly follow");
   add_model_options(command, arguments->model);
   add_reading_options(command, arguments->reading);
   command.add_option("--threads", arguments->threads,
