@@ -232,6 +232,16 @@ double error_of(const IdentifyData& data, const std::optional<Record>& believed,
   return sum;
 }
 
+/// Whether a model of the rows that are left errs less on them than one of all: driven by these
+/// alone, and by the whole record where rows of an input were left out, which the one of all has.
+bool errs_less(const Fitted& model, const Fitted& with_all, const IdentifyData& data,
+               const Unexplained& left_out, const IdentifyData& rest) {
+  const auto is_less = [&](const IdentifyData& rows, const std::optional<Record>& believed) {
+    return error_of(rows, believed, model, rest) < error_of(rows, std::nullopt, with_all, rest);
+  };
+  return is_less(rest, std::nullopt) && (!left_out.believed || is_less(data, left_out.believed));
+}
+
 /// Leaves rows out and identifies, until the rows that the model does not explain are the ones that
 /// were left out. Absent where that gives no model, or one that errs more than `with_all`, or that
 /// explains them.
@@ -244,9 +254,7 @@ std::optional<Explained> explained(const IdentifyData& data, Unexplained now,
     auto* found = std::get_if<Identified>(&result);
     if (!found) break;
     Fitted model{std::move(*found), tick_of_row(fewer.record, fewer.identify.begin)};
-    if (with_all && !(error_of(data, now.believed, model, fewer) <
-                      error_of(data, std::nullopt, *with_all, fewer)))
-      break;
+    if (with_all && !errs_less(model, *with_all, data, now, fewer)) break;
     const std::vector<LeftOut> before = std::move(now.rows);
     now = unexplained(data, &model);
     if (now.rows == before || (pass == most_passes && !now.rows.empty()))

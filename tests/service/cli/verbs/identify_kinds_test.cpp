@@ -156,6 +156,21 @@ TEST_F(IdentifyKinds, SpikesOfAnInputAreLeftOutWhereTheOutputDoesNotFollowThem) 
   }
 }
 
+TEST_F(IdentifyKinds, WhereRecordsMeetRowsAreLeftOut) {
+  double x = 0;
+  write("joined.csv", stepped("u,y", 900, [&x](int row, double u, double noise) {
+          if (row % 300 == 0) x = 8 - row / 100.0;
+          const double y = x + 0.01 * noise;
+          x = 0.3 * x + 0.7 * u;
+          return fmt::format("{:.5f}", y);
+        }));
+  const json printed = json_of({"identify", "joined.csv", "--input", "u", "--output", "y"});
+  ASSERT_EQ(printed["left_out"].size(), 1u);
+  EXPECT_EQ(printed["left_out"][0]["fault"], "outlier");
+  EXPECT_EQ(printed["order"], 1);
+  EXPECT_NEAR(printed["static_gain"][0][0], 1, 0.01);
+}
+
 TEST_F(IdentifyKinds, APlantOfAHigherOrderFollowsItsPulses) {
   double x[3] = {};
   std::mt19937_64 random(7);
