@@ -36,8 +36,8 @@ constexpr double certainly = 3;    // standard errors
 /// What a model does not explain of the data.
 struct Unexplained {
   std::vector<LeftOut> rows;
-  std::optional<Record>
-      believed;  // a straight line in place of rows of an input; absent: all of it
+  /// The record with a straight line in place of rows of an input; absent where there are none.
+  std::optional<Record> believed;
 };
 
 /// A model and the first tick that it was identified from, at which its state is known.
