@@ -209,10 +209,7 @@ void add_delays_for_poles(std::vector<DelayedFit>& fits, const Rows& rows) {
     const Dynamics dynamics{fits[i].fit.model.A, fits[i].fit.model.C};
     const Index order = dynamics.A.rows();
     if (order == 0 || eigenvalues(dynamics.A).cwiseAbs().minCoeff() > pole_near_zero) continue;
-    const std::size_t inputs = fits[i].delays.size();
-    for (std::size_t longer = 0; longer < (inputs > 1 ? inputs + 1 : 1); ++longer) {
-      Delays delays = fits[i].delays;  // of one input, and of all
-      for (std::size_t j = 0; j < inputs; ++j) delays[j] += longer == j || longer == inputs ? 1 : 0;
+    for (const Delays& delays : longer_by_a_row(fits[i].delays)) {
       const bool is_known = std::any_of(fits.begin(), fits.end(), [&](const DelayedFit& one) {
         return one.delays == delays && one.fit.model.order() == order - 1;
       });
@@ -337,6 +334,19 @@ double rows_as_one(const DelayedFit& fit, const Rows& rows) {
 }
 
 }  // namespace
+
+std::vector<std::vector<int>> longer_by_a_row(const std::vector<int>& delays) {
+  std::vector<Delays> longer;
+  for (std::size_t input = 0; input < delays.size(); ++input) {
+    longer.push_back(delays);
+    ++longer.back()[input];
+  }
+  if (delays.size() > 1) {
+    longer.push_back(delays);
+    for (int& delay : longer.back()) ++delay;
+  }
+  return longer;
+}
 
 std::vector<int> delays_shown(const Record& record, RowRange rows, DelayRange range,
                               const Identified* without, const IdentifyOptions& options) {

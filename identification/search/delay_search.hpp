@@ -12,6 +12,9 @@ namespace reident::identification {
 /// A pole below may stand in place of a row of delay.
 inline constexpr double pole_near_zero = 0.2;
 
+/// Returns the delays with that of one input longer by a row, for each input, and of all.
+std::vector<std::vector<int>> longer_by_a_row(const std::vector<int>& delays);
+
 /// How far delays are looked for, in rows: up to `most`, and on to `limit` as long as the rows show
 /// one at the end of what has been looked at.
 struct DelayRange {

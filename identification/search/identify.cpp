@@ -74,10 +74,7 @@ bool replace_pole_by_delay(Identified& found, const Record& record, RowRange row
     return false;
   options.order = static_cast<int>(A.rows()) - 1;
   const int most = options.max_input_delay.value_or(std::numeric_limits<int>::max());
-  const std::size_t inputs = found.input_delays.size();
-  for (std::size_t longer = 0; longer < (inputs > 1 ? inputs + 1 : 1); ++longer) {
-    std::vector<int> delays = found.input_delays;
-    for (std::size_t i = 0; i < inputs; ++i) delays[i] += longer == i || longer == inputs ? 1 : 0;
+  for (const std::vector<int>& delays : longer_by_a_row(found.input_delays)) {
     if (*std::max_element(delays.begin(), delays.end()) > most) continue;
     IdentifyResult result = identify_delayed(record, rows, delays, options);
     auto* fewer = std::get_if<Identified>(&result);
