@@ -35,8 +35,7 @@ struct League {
   std::vector<storage::TimeRange> admitted;  // windows of all that ever were challengers
   std::vector<std::string> unbound;          // parameters whose sensors no relation binds
   std::vector<std::string> outputs;
-  std::vector<std::string> sensors;  // of the inputs: BlockScore::bias_effects are of them
-  std::size_t derived_sensors = 0;   // so many of these, the first ones, are of derived inputs
+  std::vector<SensorBias> biases;  // of the inputs: BlockScore::bias_effects are of them
 };
 
 /// What the records say of a challenger. The conditions are looked at in the order R4, R1, R2, R3,

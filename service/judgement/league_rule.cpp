@@ -60,11 +60,12 @@ const SensorPast& past_of(const Standard& standard, std::size_t place) {
   PhasedScores scores;
   for_each_score(standard.league, *standard.league.champion, INT64_MIN, 0,
                  [&](std::size_t, const auto& block, const BlockScore& score) {
-                   if (effect_in(score, place) &&
+                   if (bias_effect_in(score, place, standard.league.biases.size()) &&
                        (block.range.begin < standard.since || scores.size() < reference_blocks))
                      scores.emplace_back(phase_of(block), &score);
                  });
-  return standard.pasts.emplace(place, SensorPast(place, scores)).first->second;
+  return standard.pasts.emplace(place, SensorPast(place, standard.league.biases.size(), scores))
+      .first->second;
 }
 
 bool worse_in_a_regime(const Standard& standard, const Comparison& compared) {
@@ -117,36 +118,39 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   return std::nullopt;
 }
 
-/// R3. What is left without an offset has to be enough, whichever sensor's it is. What one does in
-/// derived inputs is known to the first order alone. The version that the champion replaced has
-/// learnt nothing from what it is compared on, but the champion may have learnt a bias that ended.
+/// R3. What is left without an offset has to be enough, whichever sensor's it is. The version that
+/// the champion replaced has learnt nothing from what it is compared on, but the champion may have
+/// learnt a bias that ended.
 std::optional<Reason> may_be_bias(const Standard& standard, const Member& member,
                                   const Comparison& compared, Finding& finding) {
   const League& league = standard.league;
   if (standard.limits.bias == BiasPolicy::approve || league.unbound.empty() ||
       member.version == league.replaced)
     return std::nullopt;
-  std::string suspects;
+  std::map<std::string, std::pair<double, double>> suspects;  // error without the offset, offset
   finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
-  const auto suspect = [&](const std::string& sensor, OffsetFit offset) {
+  const auto look_at = [&](const std::string& sensor, OffsetFit offset) {
+    if (std::ranges::count(league.unbound, sensor) == 0) return;
     const Comparison rest = without(offset, league, member, compared);
     const double wealth = bet_on(rest.scores.values(), standard.assumed).log_wealth(),
                  error = rest.other.mrse_percent();
-    if (!leaves_enough(finding, wealth, error))
-      suspects += fmt::format("{}{} ({:.3g} too {})", suspects.empty() ? "" : ", ", sensor,
-                              std::abs(offset.offset()), offset.offset() < 0 ? "low" : "high");
+    if (!leaves_enough(finding, wealth, error)) {
+      auto& best = suspects.try_emplace(sensor, INFINITY, 0).first->second;
+      best = std::min(best, {error, offset.offset()});
+    }
     finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
     finding.mrse_without_offset = std::min(finding.mrse_without_offset, error);
   };
-  for (std::size_t q = 0; q < league.outputs.size(); ++q)
-    if (std::ranges::count(league.unbound, league.outputs[q]) > 0)
-      suspect(league.outputs[q], OffsetFit(q));
-  for (std::size_t place = 0; place < league.sensors.size(); ++place)
-    if (std::ranges::count(league.unbound, league.sensors[place]) > 0)
-      suspect(league.sensors[place],
-              OffsetFit(past_of(standard, place), place < league.derived_sensors ? most : 1));
+  for (std::size_t q = 0; q < league.outputs.size(); ++q) look_at(league.outputs[q], OffsetFit(q));
+  for (std::size_t place = 0; place < league.biases.size(); ++place)
+    look_at(league.biases[place].sensor,
+            OffsetFit(past_of(standard, place), league.biases[place].size));
   if (suspects.empty()) return std::nullopt;
-  return because<Code::bias_unverified>(league.champion->version, suspects);
+  std::string named;
+  for (const auto& [sensor, best] : suspects)
+    named += fmt::format("{}{} ({:.3g} too {})", named.empty() ? "" : ", ", sensor,
+                         std::abs(best.second), best.second < 0 ? "low" : "high");
+  return because<Code::bias_unverified>(league.champion->version, named);
 }
 
 /// R5.

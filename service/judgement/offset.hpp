@@ -2,6 +2,7 @@
 //
 // An offset of an output's sensor is a constant in that output's error. One of an input's sensor
 // has the effect that BlockScore::bias_effects says, and its own values show how large it may be.
+// Where the effect is no multiple of the offset, it has one of its sizes, which is scaled.
 #pragma once
 
 #include <array>
@@ -11,12 +12,9 @@
 #include <vector>
 
 #include "service/judgement/scores.hpp"
+#include "service/windows/member_run.hpp"
 
 namespace reident {
-
-/// The first of the numbers that say what a bias of the inputs' sensor at `place` does
-/// (BlockScore::bias_effects); null where the score has none.
-const double* effect_in(const storage::BlockScore& score, std::size_t place);
 
 /// Scores of blocks with the places of these in their cycles.
 using PhasedScores = std::vector<std::pair<std::size_t, const storage::BlockScore*>>;
@@ -24,18 +22,22 @@ using PhasedScores = std::vector<std::pair<std::size_t, const storage::BlockScor
 /// The means of an inputs' sensor in the cycles of which nobody doubts it.
 class SensorPast {
  public:
-  /// Measures the sensor at `place` in these blocks of a record, which have its effect; fewer than
-  /// reference_blocks say nothing.
-  SensorPast(std::size_t place, const PhasedScores& scores);
+  /// Measures the sensor of the bias at `place` of so many in these blocks of a record, which have
+  /// its effect; fewer than reference_blocks say nothing.
+  SensorPast(std::size_t place, std::size_t biases, const PhasedScores& scores);
 
-  std::size_t place() const { return place_; }
+  const double* effect_in(const storage::BlockScore& score) const {
+    return bias_effect_in(score, place_, biases_);
+  }
   /// How far its mean on the block is from that of its phase. Requires the effect.
-  double departure(std::size_t phase, const storage::BlockScore& score) const;
+  double departure(std::size_t phase, const storage::BlockScore& score) const {
+    return *effect_in(score) - means_[phase];
+  }
   /// Deviation of the departures of whole cycles; infinite where nothing is known.
   double spread() const { return spread_; }
 
  private:
-  std::size_t place_;
+  std::size_t place_, biases_;
   std::array<double, blocks_of_cycle> means_{};
   double spread_ = std::numeric_limits<double>::infinity();
 };
@@ -45,10 +47,9 @@ class OffsetFit {
  public:
   /// An output's sensor adds a constant to that output.
   explicit OffsetFit(std::size_t output) : output_(output) {}
-  /// An inputs' sensor may be off as far as its past allows, within three of its spreads. The part
-  /// `known` of its effect, from 0 to 1, is known; the other part may explain some of what is left.
-  /// `past` must outlive the fit.
-  OffsetFit(const SensorPast& past, double known) : past_(&past), known_(known) {}
+  /// An inputs' sensor may be off as far as its past allows, within three of its spreads, and as
+  /// the `sign` of the bias says; 0: either way. `past` must outlive the fit.
+  OffsetFit(const SensorPast& past, double sign) : past_(&past), sign_(sign) {}
 
   /// Takes in a block; one without the sensor's effect says nothing.
   void add(std::size_t phase, const storage::BlockScore& score);
@@ -71,7 +72,7 @@ class OffsetFit {
 
   std::size_t output_ = 0;
   const SensorPast* past_ = nullptr;  // null where the sensor is the output's
-  double known_ = 1;
+  double sign_ = 0;
   std::vector<Effect> sums_;         // by output, times rows
   double rows_ = 0, departure_ = 0;  // times rows
 };

@@ -76,12 +76,21 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
   return mistakes;
 }
 
-std::vector<std::string> sensors_of(const std::vector<std::string>& inputs,
-                                    const std::vector<DerivedInput>& derived) {
-  std::vector<std::string> derived_first;
-  for (const DerivedInput& one : derived) derived_first.push_back(one.name);
-  derived_first.insert(derived_first.end(), inputs.begin(), inputs.end());
-  return InputExpressions(derived_first, derived).parameters();
+std::vector<SensorBias> biases_of(const std::vector<std::string>& inputs,
+                                  const std::vector<DerivedInput>& derived) {
+  // Of a root, an effect that is scaled from one size to the next one is off by less than 2.
+  constexpr double sizes[] = {-0.25, -0.0625, 0.0625, 0.25};
+  std::vector<std::string> computed;
+  for (const DerivedInput& one : derived) computed.push_back(one.name);
+  std::vector<SensorBias> biases;
+  const InputExpressions expressions(computed, derived);
+  for (const std::string& sensor : expressions.parameters())
+    for (const double size : sizes) biases.push_back({sensor, size});
+  for (const std::string& input : inputs)
+    if (!is_derived(derived, input) &&
+        std::ranges::find(biases, input, &SensorBias::sensor) == biases.end())
+      biases.push_back({input, 0});
+  return biases;
 }
 
 InputExpressions::InputExpressions(const std::vector<std::string>& inputs,

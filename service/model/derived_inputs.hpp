@@ -35,10 +35,19 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
                                              const std::vector<std::string>& inputs,
                                              const std::vector<std::string>& outputs);
 
-/// Returns the parameters that the inputs are computed from, each once: those of derived ones
-/// first, and each in the order of first use.
-std::vector<std::string> sensors_of(const std::vector<std::string>& inputs,
-                                    const std::vector<DerivedInput>& derived);
+/// A bias that a sensor may have.
+struct SensorBias {
+  std::string sensor;
+  double size = 0;  // over the rms of its values, above 0 where it reads too high; 0: any
+  bool operator==(const SensorBias&) const = default;
+};
+
+/// Returns the biases whose effects on the inputs are looked at, in the order of
+/// BlockScore::bias_effects: those of derived inputs' sensors first, and each in the order of first
+/// use. What a bias does to a derived input is no multiple of its size: there each sensor has one
+/// of several sizes, up and down.
+std::vector<SensorBias> biases_of(const std::vector<std::string>& inputs,
+                                  const std::vector<DerivedInput>& derived);
 
 /// Computes the m inputs of a model from the values of q parameters, tick by tick. Not const where
 /// it computes, since it keeps room for operands: one thread at a time.

@@ -90,8 +90,7 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
       judge_(equipment) {
   league_.unbound = unbound_parameters(equipment);
   league_.outputs = reader_.request().outputs;
-  league_.sensors = sensors_of(reader_.request().inputs, reader_.request().derived);
-  league_.derived_sensors = sensors_of({}, reader_.request().derived).size();
+  league_.biases = biases_of(reader_.request().inputs, reader_.request().derived);
 }
 
 void LeagueKeeper::forget(storage::TimeRange range) {

@@ -63,9 +63,8 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   StoredRecord record;
   record.limits = limits_of(evidence_of(story.attempt), record.league.unbound);
   record.league.outputs = signal_names(story.model.outputs);
-  record.league.sensors =
-      sensors_of(signal_names(story.model.inputs), derived_inputs(story.model.inputs));
-  record.league.derived_sensors = sensors_of({}, derived_inputs(story.model.inputs)).size();
+  record.league.biases =
+      biases_of(signal_names(story.model.inputs), derived_inputs(story.model.inputs));
   std::vector<storage::VersionSummary> waiting = history.summaries(equipment);
   std::erase_if(waiting, [](const auto& one) { return one.status != "waiting"; });
   storage::HistoryFilter versions;

@@ -59,7 +59,7 @@ Duration checked_before_block(const EquipmentConfig& equipment) {
 BlockReader::BlockReader(const std::string& spacecraft, const EquipmentConfig& equipment)
     : length_(block_length(equipment)),
       telemetry_(request_of(spacecraft, equipment), 1, checks_of(equipment)),
-      sensors_(sensors_of(telemetry_.request().inputs, telemetry_.request().derived)) {}
+      biases_(biases_of(telemetry_.request().inputs, telemetry_.request().derived)) {}
 
 bool BlockReader::reads(storage::Time begin, storage::TimeRange range) const {
   // A sample serves the ticks from `phase` before it on, until it is too old.
@@ -90,7 +90,7 @@ BlockSamples BlockReader::read(const storage::Archive& archive, storage::Time be
   try {
     const storage::TimeRange checked{begin - checked_before(length_), begin + length_};
     const auto wanted = ticks_of({begin - length_, begin + length_}, period);
-    loaded = telemetry_.load(archive, checked, WantedPart{wanted, sensors_});
+    loaded = telemetry_.load(archive, checked, WantedPart{wanted, biases_});
     auto* data = std::get_if<WindowData>(&loaded);
     if (!data) return samples;
     samples.record = std::move(data->record);

@@ -36,7 +36,7 @@ struct BlockSamples {
   storage::Block block;
   identification::Record record;
   identification::Index first_row = 0;  // of the block
-  /// WindowData::bias_effects of the inputs' sensors (sensors_of()), at the record's rows.
+  /// WindowData::bias_effects of biases_of() the inputs, at the record's rows.
   std::vector<identification::Record> bias_effects;
 };
 
@@ -67,7 +67,7 @@ class BlockReader {
 
   Duration length_;
   WindowCache telemetry_;
-  std::vector<std::string> sensors_;  // of the inputs
+  std::vector<SensorBias> biases_;
 };
 
 }  // namespace reident

@@ -3,6 +3,7 @@
 // behind a restart to the same bits.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "service/model/model_version.hpp"
@@ -18,5 +19,11 @@ namespace reident {
 /// inputs and outputs of the samples.
 storage::BlockScore score_block(const EquipmentModel& model, std::int64_t number,
                                 const BlockSamples& samples, const storage::RunState& before);
+
+/// Returns what BlockScore::bias_effects says of the bias at `place` of so many: the mean of the
+/// sensor's values, and for each output the means of the effect's square and of its product with
+/// the error. Null where the score has none, or those of another number of biases.
+const double* bias_effect_in(const storage::BlockScore& score, std::size_t place,
+                             std::size_t biases);
 
 }  // namespace reident

@@ -19,48 +19,49 @@ using identification::Vector;
 
 namespace {
 
-/// WindowData::bias_effects of the sensor at `place` of `samples`, for biases up and down. Where
-/// one of them gives an input that is not finite, the other counts; 0: it has none. `inputs` are
-/// those of the samples that have any.
+/// WindowData::bias_effects of a bias, in its unit, of the sensor at `place` of `samples`; 0: it
+/// has no effect. Where the sensor without it would give an input that is not finite, it counts as
+/// far as that is finite. `inputs` are those of the samples that have any.
 Record bias_effect(InputExpressions& expressions, Index place, double bias, const Record& samples,
                    const Record& inputs) {
+  constexpr double least_step = 1e-5;
   Record effect{inputs.period_s, Matrix::Zero(inputs.rows(), inputs.u.cols()),
                 Matrix(inputs.rows(), 1), inputs.segments};
   const std::vector<Index> moved = expressions.inputs_of(place);
-  Vector raw(samples.u.cols()), above(std::ssize(moved)), below(std::ssize(moved));
+  Vector raw(samples.u.cols()), without(std::ssize(moved));
   for (const identification::Segment& segment : inputs.segments) {
     Index from = first_row_at(samples, segment.first_tick);
     for (Index row = segment.begin; row < segment.end; ++row, ++from) {
       effect.y(row, 0) = samples.u(from, place);
-      if (!(bias > 0)) continue;
+      if (bias == 0) continue;
       raw = samples.u.row(from).transpose();
-      double width = 0;
-      const auto move = [&](double offset, Vector& found) {
-        raw(place) = samples.u(from, place) + offset;
+      const auto is_finite_without = [&](double part) {
+        raw(place) = samples.u(from, place) - part;
         for (std::size_t i = 0; i < moved.size(); ++i)
-          found(Index(i)) = expressions.evaluate(raw, moved[i]);
-        if (found.allFinite()) {
-          width += bias;
-          return;
-        }
-        for (std::size_t i = 0; i < moved.size(); ++i) found(Index(i)) = inputs.u(row, moved[i]);
+          without(Index(i)) = expressions.evaluate(raw, moved[i]);
+        return without.allFinite();
       };
-      move(bias, above);
-      move(-bias, below);
-      if (!(width > 0)) continue;
+      if (!is_finite_without(bias)) {
+        double part = 0;
+        for (double step = bias / 2; std::abs(step) > least_step * std::abs(bias); step /= 2)
+          if (is_finite_without(part + step)) part += step;
+        is_finite_without(part);
+      }
       for (std::size_t i = 0; i < moved.size(); ++i)
-        effect.u(row, moved[i]) = (above(Index(i)) - below(Index(i))) / width;
+        effect.u(row, moved[i]) = (inputs.u(row, moved[i]) - without(Index(i))) / bias;
     }
   }
   return effect;
 }
 
-/// A tenth of the values of the sensor at `place`, or 1; 0 where it is not analog.
-double bias_of(const std::vector<Channel>& channels, const Record& samples, Index place) {
+/// The bias of the sensor at `place` in its unit, where its values say what that is; 0 where it is
+/// not analog.
+double in_unit(const SensorBias& bias, const std::vector<Channel>& channels, const Record& samples,
+               Index place) {
   if (!channels[static_cast<std::size_t>(place)].is_analog) return 0;
-  const double values = std::sqrt(samples.u.col(place).squaredNorm() /
-                                  static_cast<double>(std::max<Index>(1, samples.rows())));
-  return values > 0 ? values / 10 : 1;
+  const double rms = std::sqrt(samples.u.col(place).squaredNorm() /
+                               static_cast<double>(std::max<Index>(1, samples.rows())));
+  return (bias.size == 0 ? 1 : bias.size) * (rms > 0 ? rms : 1);
 }
 
 }  // namespace
@@ -110,22 +111,29 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   data.outputs_move =
       samples.rows() > 0 && samples.y != samples.y.row(0).replicate(samples.rows(), 1);
   InputExpressions expressions(request_.inputs, request_.derived);
-  std::vector<double> biases;
+  struct Looked {
+    Index place;
+    double bias;
+  };
+  std::vector<Looked> looked;
   if (wanted) {
     window = {wanted->ticks.begin * request_.period, wanted->ticks.end * request_.period};
-    for (Index place = 0; place < samples.u.cols(); ++place)
-      biases.push_back(bias_of(data.input_channels, samples, place));
+    for (const SensorBias& bias : wanted->biases) {
+      const Index place = std::ranges::find(expressions.parameters(), bias.sensor) -
+                          expressions.parameters().begin();
+      looked.push_back({place, in_unit(bias, data.input_channels, samples, place)});
+    }
     samples = rows_at(samples, wanted->ticks);
   }
   Record read = expressions.evaluate(wanted ? Record(samples) : std::move(samples));
-  if (wanted)
-    for (const std::string& sensor : wanted->sensors) {
-      const Index place =
-          std::ranges::find(expressions.parameters(), sensor) - expressions.parameters().begin();
-      data.bias_effects.push_back(
-          without(bias_effect(expressions, place, biases[std::size_t(place)], samples, read),
-                  data.plausibility.holes));
-    }
+  for (const auto& [place, bias] : looked) {
+    Record effect =
+        without(bias_effect(expressions, place, bias, samples, read), data.plausibility.holes);
+    // The same bits where nothing depends on the size: the run then is the same one too.
+    if (!data.bias_effects.empty() && effect.u.isApprox(data.bias_effects.back().u, 1e-9))
+      effect.u = data.bias_effects.back().u;
+    data.bias_effects.push_back(std::move(effect));
+  }
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

@@ -22,11 +22,11 @@
 
 namespace reident {
 
-/// A part of a window whose whole is checked alone, and the sensors of inputs of which
-/// WindowData::bias_effects is wanted.
+/// A part of a window whose whole is checked alone, and the biases of inputs' sensors whose effects
+/// are wanted there (WindowData::bias_effects).
 struct WantedPart {
   identification::TickRange ticks;
-  std::vector<std::string> sensors;
+  std::vector<SensorBias> biases;
 };
 
 /// For one equipment and one thread at a time. An exception leaves it usable: what was not read is

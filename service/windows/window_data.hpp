@@ -74,8 +74,8 @@ struct WindowData {
   double coverage = 0;        // share of the window's ticks that have a row
   double read_coverage = 0;   // before holes were made of what is excluded
   bool outputs_move = false;  // of a WindowCache: any, in the whole window, before that
-  /// One for each sensor that was asked for, at the rows of the ticks that were: u is the change of
-  /// the inputs that a bias of the sensor brings, over the bias, and y (N x 1) are its values.
+  /// One for each bias that was asked for, at the rows of the ticks that were: u is by how much the
+  /// inputs are above those without it, over the bias, and y (N x 1) are the sensor's values.
   std::vector<identification::Record> bias_effects;
 };
 

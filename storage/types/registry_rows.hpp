@@ -167,9 +167,9 @@ struct BlockScore {
   std::vector<double> noise;
   /// At the end of the block.
   RunState state;
-  /// What a bias of a sensor does to the run, over the bias. For one sensor behind the other: the
-  /// mean of its values, and for each output the means of the effect's square and of its product
-  /// with the error. The last sensors may be missing.
+  /// What biases of the inputs' sensors do to the run, over the bias. For one behind the other: the
+  /// mean of the sensor's values, and for each output the means of the effect's square and of its
+  /// product with the error. Empty where nobody looked.
   std::vector<double> bias_effects;
 };
 

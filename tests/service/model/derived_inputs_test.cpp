@@ -118,5 +118,15 @@ TEST(DerivedInputs, WithoutAMistakeHaveNone) {
   EXPECT_THAT(mistakes_in(power, {"P", "u", "i"}, {"y"}), IsEmpty());
 }
 
+TEST(DerivedInputs, ASensorOfADerivedInputHasBiasesOfSeveralSizes) {
+  const std::vector<SensorBias> biases = biases_of({"w", "q", "u"}, {{"q", "u * v", ""}});
+  std::vector<std::string> sensors;
+  for (const SensorBias& bias : biases) sensors.push_back(bias.sensor);
+  EXPECT_THAT(sensors, ::testing::ElementsAre("u", "u", "u", "u", "v", "v", "v", "v", "w"));
+  EXPECT_EQ(biases[0].size, -biases[3].size);
+  EXPECT_GT(biases[2].size, 0);
+  EXPECT_EQ(biases[8].size, 0) << "its effect is a multiple of it";
+}
+
 }  // namespace
 }  // namespace reident::test::derived_inputs_test

@@ -91,6 +91,16 @@ TEST(MemberRun, SaysWhatABiasOfASensorDoesToIt) {
   samples.record.y.array() += 0.5;
   score = score_block(model(), 1, samples, state);
   EXPECT_NEAR(score.bias_effects[2], 3 * gain * 0.5, 1e-9);
+  EXPECT_EQ(bias_effect_in(score, 0, 1), score.bias_effects.data());
+  EXPECT_EQ(bias_effect_in(score, 0, 2), nullptr) << "rows of other biases";
+  EXPECT_EQ(bias_effect_in({}, 0, 1), nullptr);
+
+  samples.bias_effects.push_back(samples.bias_effects[0]);
+  samples.bias_effects.push_back(samples.bias_effects[0]);
+  samples.bias_effects[2].u.setConstant(6);
+  score = score_block(model(), 1, samples, state);
+  EXPECT_EQ(bias_effect_in(score, 1, 3)[1], bias_effect_in(score, 0, 3)[1]);
+  EXPECT_NEAR(bias_effect_in(score, 2, 3)[1], 36 * gain * gain, 1e-9);
 }
 
 TEST(MemberRun, OfABlockWithoutSamplesHasNoRowsAndKeepsItsState) {

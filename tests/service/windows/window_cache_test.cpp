@@ -104,7 +104,8 @@ TEST_F(WindowCaches, SayWhatABiasOfASensorDoesToDerivedInputs) {
   archive.append(telemetry(day, 1000));
   const storage::TimeRange window{day, day + 1000 * second};
   const auto result =
-      kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), {"u", "v"}});
+      kept.load(archive, window,
+                WantedPart{ticks_of(window, kept.request().period), {{"u", 0.25}, {"v", -0.25}}});
   const WindowData& data = std::get<WindowData>(result);
   ASSERT_EQ(data.bias_effects.size(), 2U);
   for (const identification::Record& effect : data.bias_effects)
@@ -123,8 +124,8 @@ TEST_F(WindowCaches, ABiasOfAnInputItselfIsThatOfItsSensor) {
   const storage::TimeRange window{day, day + 1000 * second};
   const WindowRequest& request = kept.request();
   ASSERT_TRUE(request.derived.empty());
-  const auto result =
-      kept.load(archive, window, WantedPart{ticks_of(window, request.period), request.inputs});
+  const auto result = kept.load(
+      archive, window, WantedPart{ticks_of(window, request.period), biases_of(request.inputs, {})});
   const WindowData& data = std::get<WindowData>(result);
   ASSERT_EQ(data.bias_effects.size(), request.inputs.size());
   for (std::size_t j = 0; j < request.inputs.size(); ++j) {
@@ -137,22 +138,27 @@ TEST_F(WindowCaches, ABiasOfAnInputItselfIsThatOfItsSensor) {
   }
 }
 
-/// Below 0 there is no root: the slope upwards counts.
-TEST_F(WindowCaches, SayWhatABiasDoesAtTheEndOfWhatAnInputIsDefinedFor) {
+/// What the inputs are above those without the bias, at its size; below 0 there is no root, and a
+/// sensor reads too high by what it is above at most.
+TEST_F(WindowCaches, SayWhatABiasDoesAtItsSizeAndAtTheEndOfWhatAnInputIsDefinedFor) {
   EquipmentConfig equipment = plant();
   equipment.inputs = {"v", "q"};
-  equipment.derived = {{"q", "(u + 1) ^ 0.5", "V"}};
+  equipment.derived = {{"q", "(u + 1.1) ^ 0.5", "V"}};
   kept = window_cache_of("SAT", equipment);
   archive.append(telemetry(day, 1000));  // u is -1, 0 and 1 in turn
   const storage::TimeRange window{day, day + 1000 * second};
+  const std::vector<SensorBias> biases = biases_of(equipment.inputs, equipment.derived);
   const auto result =
-      kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), {"u"}});
+      kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), biases});
   const WindowData& data = std::get<WindowData>(result);
-  const double bias = 0.1 * std::sqrt(2.0 / 3);
-  for (identification::Index row = 0; row < data.record.rows(); ++row) {
-    if (data.bias_effects[0].y(row, 0) != -1) continue;
-    EXPECT_NEAR(data.bias_effects[0].u(row, 1), 1 / std::sqrt(bias), 0.02);
-  }
+  ASSERT_EQ(data.bias_effects.size(), biases.size());
+  const double rms = std::sqrt(2.0 / 3);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (identification::Index row = 0; row < data.record.rows(); ++row) {
+      const double bias = biases[i].size * rms, u = data.bias_effects[i].y(row, 0) + 1.1;
+      const double expected = (std::sqrt(u) - std::sqrt(std::max(0.0, u - bias))) / bias;
+      EXPECT_NEAR(data.bias_effects[i].u(row, 1), expected, 0.03) << biases[i].size << ' ' << u;
+    }
 }
 
 TEST_F(WindowCaches, NameAParameterOfAnExpressionThatNobodyDescribed) {
