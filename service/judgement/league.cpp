@@ -124,10 +124,8 @@ std::vector<Finding> Judge::findings(const League& league) {
     return findings;
   }
   take_in(league);
-  std::map<std::size_t, SensorPast> pasts;
   const Standard standard{
-      league, *limits_, since_, changed(league), usual_dependence(league), regimes_.numbers(),
-      pasts};
+      league, *limits_, since_, changed(league), usual_dependence(league), regimes_.numbers()};
   for (const Member& member : league.challengers)
     findings.push_back(
         judge_against_champion(standard, member, comparison(league, member, *league.champion)));

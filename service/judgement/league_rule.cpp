@@ -38,20 +38,6 @@ Finding finding_of(const Member& member, const Sums& own, const Bet& bet) {
   return finding;
 }
 
-/// The member compared with the champion without what an offset, which is fitted to them, explains
-/// of its errors there.
-Comparison without(OffsetFit& offset, const League& league, const Member& member,
-                   const Comparison& compared) {
-  for (const std::size_t i : compared.blocks)
-    offset.add(phase_of(league.blocks[i]), *find(*league.champion, league.blocks[i].range.begin));
-  Comparison result;
-  for (const std::size_t i : compared.blocks) {
-    const BlockScore& champion = *find(*league.champion, league.blocks[i].range.begin);
-    result.add(i, league.blocks[i], *find(member, champion.begin), champion, offset.rest(champion));
-  }
-  return result;
-}
-
 /// The past of the inputs' sensor at `place` is the champion's record before the last change; where
 /// that is short, its first cycles. Blocks that do not have its effect say nothing of it.
 const SensorPast& past_of(const Standard& standard, std::size_t place) {
@@ -99,7 +85,7 @@ double least_on_both_sides(const Standard& standard) {
 /// R2. Uncovered blocks count as if they were lost entirely.
 std::optional<Reason> unproved_somewhere(const Standard& standard, const Member& member,
                                          const Comparison& compared, Finding& finding) {
-  const auto& [league, limits, since, changed, assumed, regimes, pasts] = standard;
+  const auto& [league, limits, since, changed, assumed, regimes, pasts, on_both_sides] = standard;
   const std::int64_t champion = league.champion->version;
   const auto served = served_regimes(league, regimes, member, {changed, INT64_MAX});
   const double uncovered = finding.uncovered_share = uncovered_share(served);
@@ -113,7 +99,8 @@ std::optional<Reason> unproved_somewhere(const Standard& standard, const Member&
   // What the change did is as much from either side of it, and no one model misses it on both.
   auto& [before, change] = finding.before_change_mrse_percent = served_errors(
       league, served_regimes(league, regimes, member, {INT64_MIN, changed}), member, false);
-  change = std::min(std::max(change, finding.champion_mrse_percent), least_on_both_sides(standard));
+  if (!on_both_sides) on_both_sides = least_on_both_sides(standard);
+  change = std::min(std::max(change, finding.champion_mrse_percent), *on_both_sides);
   if (most * before > change) return because<Code::worse_before_change>(before, champion, change);
   return std::nullopt;
 }
@@ -128,10 +115,20 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
       member.version == league.replaced)
     return std::nullopt;
   std::map<std::string, std::pair<double, double>> suspects;  // error without the offset, offset
-  finding.wealth_without_offset = finding.mrse_without_offset = INFINITY;
+  finding.wealth_without_offset = finding.log_wealth;
+  finding.mrse_without_offset = finding.champion_mrse_percent;
   const auto look_at = [&](const std::string& sensor, OffsetFit offset) {
     if (std::ranges::count(league.unbound, sensor) == 0) return;
-    const Comparison rest = without(offset, league, member, compared);
+    std::vector<const BlockScore*> scores;  // the champion's
+    for (const std::size_t i : compared.blocks) {
+      scores.push_back(find(*league.champion, league.blocks[i].range.begin));
+      offset.add(phase_of(league.blocks[i]), *scores.back());
+    }
+    if (offset.offset() == 0) return;
+    Comparison rest;
+    for (std::size_t k = 0; k < scores.size(); ++k)
+      rest.add(compared.blocks[k], league.blocks[compared.blocks[k]],
+               *find(member, scores[k]->begin), *scores[k], offset.rest(*scores[k]));
     const double wealth = bet_on(rest.scores.values(), standard.assumed).log_wealth(),
                  error = rest.other.mrse_percent();
     if (!leaves_enough(finding, wealth, error)) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "identification/statistics/betting.hpp"
@@ -48,7 +49,9 @@ struct Standard {
   storage::Time changed;  // the equipment is as it is from here on
   double assumed;         // dependence of scores
   const std::vector<int>& regimes;
-  std::map<std::size_t, SensorPast>& pasts;  // by their places, of the sensors that were asked for
+  // What was asked for, by members in turn.
+  mutable std::map<std::size_t, SensorPast> pasts{};  // by the places of their biases
+  mutable std::optional<double> on_both_sides{};      // least_on_both_sides()
 };
 
 /// A first version has to be good on telemetry of a whole cycle, and the simulator's own model is

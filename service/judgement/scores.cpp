@@ -21,11 +21,10 @@ bool counts(const Block& block) {
 
 const BlockScore* find(const std::vector<BlockScore>& scores, storage::Time begin) {
   if (scores.empty() || begin < scores.front().begin || begin > scores.back().begin) return nullptr;
-  // A record has hardly a hole.
-  const double share = double(begin - scores.front().begin) /
-                       std::max(1.0, double(scores.back().begin - scores.front().begin));
-  auto found =
-      scores.begin() + static_cast<std::ptrdiff_t>(share * double(scores.size() - 1) + 0.5);
+  // Behind the blocks of before, a record has hardly a hole.
+  const auto last = scores.end() - 1;
+  const auto length = scores.size() > 1 ? last->begin - (last - 1)->begin : 1;
+  auto found = last - std::min(last - scores.begin(), (last->begin - begin) / length);
   if (found->begin != begin)
     found = std::ranges::lower_bound(scores, begin, {}, &BlockScore::begin);
   return found->begin == begin && found->rows > 0 ? &*found : nullptr;
