@@ -38,7 +38,7 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
 /// A bias that a sensor may have.
 struct SensorBias {
   std::string sensor;
-  double size = 0;  // over the rms of its values, above 0 where it reads too high; 0: any
+  double size = 0;  // in deviations of its values, above 0 where it reads too high; 0: any
   bool operator==(const SensorBias&) const = default;
 };
 

@@ -59,9 +59,10 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
 double in_unit(const SensorBias& bias, const std::vector<Channel>& channels, const Record& samples,
                Index place) {
   if (!channels[static_cast<std::size_t>(place)].is_analog) return 0;
-  const double rms = std::sqrt(samples.u.col(place).squaredNorm() /
-                               static_cast<double>(std::max<Index>(1, samples.rows())));
-  return (bias.size == 0 ? 1 : bias.size) * (rms > 0 ? rms : 1);
+  const auto values = samples.u.col(place).array();
+  const double deviation =
+      values.size() == 0 ? 0 : std::sqrt((values - values.mean()).square().mean());
+  return (bias.size == 0 ? 1 : bias.size) * (deviation > 0 ? deviation : 1);
 }
 
 }  // namespace

@@ -152,10 +152,10 @@ TEST_F(WindowCaches, SayWhatABiasDoesAtItsSizeAndAtTheEndOfWhatAnInputIsDefinedF
       kept.load(archive, window, WantedPart{ticks_of(window, kept.request().period), biases});
   const WindowData& data = std::get<WindowData>(result);
   ASSERT_EQ(data.bias_effects.size(), biases.size());
-  const double rms = std::sqrt(2.0 / 3);
+  const double deviation = std::sqrt(2.0 / 3);
   for (std::size_t i = 0; i < 4; ++i)
     for (identification::Index row = 0; row < data.record.rows(); ++row) {
-      const double bias = biases[i].size * rms, u = data.bias_effects[i].y(row, 0) + 1.1;
+      const double bias = biases[i].size * deviation, u = data.bias_effects[i].y(row, 0) + 1.1;
       const double expected = (std::sqrt(u) - std::sqrt(std::max(0.0, u - bias))) / bias;
       EXPECT_NEAR(data.bias_effects[i].u(row, 1), expected, 0.03) << biases[i].size << ' ' << u;
     }
