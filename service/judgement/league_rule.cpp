@@ -141,7 +141,7 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   for (std::size_t q = 0; q < league.outputs.size(); ++q) look_at(league.outputs[q], OffsetFit(q));
   for (std::size_t place = 0; place < league.biases.size(); ++place)
     look_at(league.biases[place].sensor,
-            OffsetFit(past_of(standard, place), league.biases[place].size));
+            OffsetFit(past_of(standard, place), league.biases[place].direction));
   if (suspects.empty()) return std::nullopt;
   std::string named;
   for (const auto& [sensor, best] : suspects)

@@ -52,8 +52,8 @@ double OffsetFit::offset_in(std::size_t output) const {
   const double offset = -effect[1] / effect[0];
   if (!past_) return offset;
   const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_,
-               low = std::max<double>(moved - reach, sign_ > 0 ? 0 : -INFINITY),
-               high = std::min<double>(moved + reach, sign_ < 0 ? 0 : INFINITY);
+               low = std::max<double>(moved - reach, direction_ > 0 ? 0 : -INFINITY),
+               high = std::min<double>(moved + reach, direction_ < 0 ? 0 : INFINITY);
   return low < high ? std::clamp(offset, low, high) : 0;
 }
 

@@ -47,9 +47,9 @@ class OffsetFit {
  public:
   /// An output's sensor adds a constant to that output.
   explicit OffsetFit(std::size_t output) : output_(output) {}
-  /// An inputs' sensor may be off as far as its past allows, within three of its spreads, and as
-  /// the `sign` of the bias says; 0: either way. `past` must outlive the fit.
-  OffsetFit(const SensorPast& past, double sign) : past_(&past), sign_(sign) {}
+  /// An inputs' sensor may be off as far as its past allows, within three of its spreads, in the
+  /// `direction` of its bias (SensorBias). `past` must outlive the fit.
+  OffsetFit(const SensorPast& past, int direction) : past_(&past), direction_(direction) {}
 
   /// Takes in a block; one without the sensor's effect says nothing.
   void add(std::size_t phase, const storage::BlockScore& score);
@@ -72,7 +72,7 @@ class OffsetFit {
 
   std::size_t output_ = 0;
   const SensorPast* past_ = nullptr;  // null where the sensor is the output's
-  double sign_ = 0;
+  int direction_ = 0;
   std::vector<Effect> sums_;         // by output, times rows
   double rows_ = 0, departure_ = 0;  // times rows
 };

@@ -1,6 +1,7 @@
 #include "service/model/derived_inputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -78,19 +79,34 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
 
 std::vector<SensorBias> biases_of(const std::vector<std::string>& inputs,
                                   const std::vector<DerivedInput>& derived) {
-  // Of a root, an effect that is scaled from one size to the next one is off by less than 2.
-  constexpr double sizes[] = {-0.25, -0.0625, 0.0625, 0.25};
   std::vector<std::string> computed;
   for (const DerivedInput& one : derived) computed.push_back(one.name);
   std::vector<SensorBias> biases;
   const InputExpressions expressions(computed, derived);
-  for (const std::string& sensor : expressions.parameters())
-    for (const double size : sizes) biases.push_back({sensor, size});
+  for (Index place = 0; place < std::ssize(expressions.parameters()); ++place) {
+    const std::string& sensor = expressions.parameters()[static_cast<std::size_t>(place)];
+    if (expressions.are_affine_in(place)) {
+      biases.push_back({sensor});
+      continue;
+    }
+    for (const int direction : {-1, 1})
+      for (int size = 0; size < bias_sizes; ++size) biases.push_back({sensor, direction, size});
+  }
   for (const std::string& input : inputs)
     if (!is_derived(derived, input) &&
         std::ranges::find(biases, input, &SensorBias::sensor) == biases.end())
-      biases.push_back({input, 0});
+      biases.push_back({input});
   return biases;
+}
+
+double size_of(const SensorBias& bias, double deviation) {
+  if (!(deviation > 0)) deviation = 1;
+  if (bias.direction == 0) return deviation;
+  // What a bias does to a root where the sensor rests at 0, the next larger size does as well, and
+  // to larger values at most twice as much.
+  const int largest = std::ilogb(deviation) - 1;
+  const int below = ((largest - bias.size) % bias_sizes + bias_sizes) % bias_sizes;
+  return std::ldexp(bias.direction, largest - below);
 }
 
 InputExpressions::InputExpressions(const std::vector<std::string>& inputs,
@@ -141,6 +157,14 @@ std::vector<Index> InputExpressions::inputs_of(Index parameter) const {
     if (std::ranges::count(inputs_[i].operands, parameter) > 0)
       places.push_back(static_cast<Index>(i));
   return places;
+}
+
+bool InputExpressions::are_affine_in(Index parameter) const {
+  return std::ranges::all_of(inputs_, [parameter](const Input& input) {
+    const auto found = std::ranges::find(input.operands, parameter);
+    return found == input.operands.end() || !input.expression ||
+           input.expression->is_affine_in(static_cast<std::size_t>(found - input.operands.begin()));
+  });
 }
 
 Record InputExpressions::evaluate(Record record) {

@@ -38,16 +38,26 @@ std::vector<DerivedInputMistake> mistakes_in(const std::vector<DerivedInput>& de
 /// A bias that a sensor may have.
 struct SensorBias {
   std::string sensor;
-  double size = 0;  // in deviations of its values, above 0 where it reads too high; 0: any
+  int direction = 0;  // 1: it reads too high; -1: too low; 0: either, by whatever
+  int size = 0;       // of `direction`: the exponent of a power of two, modulo bias_sizes
+
   bool operator==(const SensorBias&) const = default;
 };
 
+/// Sizes of a bias of one direction that are looked at.
+inline constexpr int bias_sizes = 5;
+
 /// Returns the biases whose effects on the inputs are looked at, in the order of
 /// BlockScore::bias_effects: those of derived inputs' sensors first, and each in the order of first
-/// use. What a bias does to a derived input is no multiple of its size: there each sensor has one
-/// of several sizes, up and down.
+/// use. Where what a bias does to a derived input is no multiple of it, the sensor has all sizes
+/// downwards and upwards.
 std::vector<SensorBias> biases_of(const std::vector<std::string>& inputs,
                                   const std::vector<DerivedInput>& derived);
+
+/// Returns the size of the bias in the sensor's unit, whose values have this deviation: for a
+/// direction a power of two, from a 64th of the deviation to a half. A bias keeps its size as long
+/// as that is so, however the deviation changes.
+double size_of(const SensorBias& bias, double deviation);
 
 /// Computes the m inputs of a model from the values of q parameters, tick by tick. Not const where
 /// it computes, since it keeps room for operands: one thread at a time.
@@ -71,6 +81,9 @@ class InputExpressions {
 
   /// Places of the inputs that are computed from the parameter at this place of parameters().
   std::vector<identification::Index> inputs_of(identification::Index parameter) const;
+
+  /// Whether these are all affine in the parameter.
+  bool are_affine_in(identification::Index parameter) const;
 
   /// Returns the record with the inputs (N x m) in the place of its u (N x q), which holds
   /// parameters(). Rows at which an input has no finite value are left out as holes are: the record

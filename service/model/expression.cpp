@@ -29,4 +29,26 @@ double Expression::evaluate(std::span<const double> values) const {
   return std::isfinite(result) ? result : none;
 }
 
+bool Expression::is_affine_in(std::size_t place) const {
+  enum class Share { constant, affine, other };
+  std::vector<Share> stack;
+  for (const PostfixStep& step : program_) {
+    if (step.kind <= postfix_variable) {
+      const bool is_it = step.kind == postfix_variable && step.variable == place;
+      stack.push_back(is_it ? Share::affine : Share::constant);
+      continue;
+    }
+    const auto operands = stack.end() - static_cast<std::ptrdiff_t>(postfix_operands(step.kind));
+    const Share first = *operands, last = stack.back(),
+                most = *std::max_element(operands, stack.end());
+    stack.erase(operands, stack.end());
+    const bool keeps =
+        step.kind == postfix_negate || step.kind == postfix_add || step.kind == postfix_subtract ||
+        (step.kind == postfix_multiply && std::min(first, last) == Share::constant) ||
+        (step.kind == postfix_divide && last == Share::constant);
+    stack.push_back(keeps || most == Share::constant ? most : Share::other);
+  }
+  return stack.back() != Share::other;
+}
+
 }  // namespace reident

@@ -50,6 +50,10 @@ class Expression {
   /// values give the same bits, in the service, in simulators and in an FMU. Allocates nothing.
   double evaluate(std::span<const double> values) const;
 
+  /// Whether a change of the variable at `place` of variables() changes the value by a multiple of
+  /// it, the others held: its factor has no other function of this variable.
+  bool is_affine_in(std::size_t place) const;
+
  private:
   Expression(std::vector<std::string> variables, std::vector<PostfixStep> program);
 

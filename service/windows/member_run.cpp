@@ -118,11 +118,8 @@ storage::BlockScore score_block(const EquipmentModel& model, std::int64_t number
   score.mean = list(errors.colwise().mean().transpose());
   score.square = list(errors.cwiseAbs2().colwise().mean().transpose());
   score.noise = list(identification::noise_squares(y, outputs, segments));
-  Matrix effect;
-  for (std::size_t i = 0; i < samples.bias_effects.size(); ++i) {
-    const identification::Record& bias = samples.bias_effects[i];
-    if (i == 0 || bias.u != samples.bias_effects[i - 1].u)
-      effect = response(model.dynamics, record, bias.u).bottomRows(rows);
+  for (const identification::Record& bias : samples.bias_effects) {
+    const Matrix effect = response(model.dynamics, record, bias.u).bottomRows(rows);
     score.bias_effects.push_back(bias.y.bottomRows(rows).mean());
     for (Index q = 0; q < effect.cols(); ++q)
       for (const double sum : {effect.col(q).squaredNorm(), effect.col(q).dot(errors.col(q))})

@@ -54,15 +54,13 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
   return effect;
 }
 
-/// The bias of the sensor at `place` in its unit, where its values say what that is; 0 where it is
-/// not analog.
-double in_unit(const SensorBias& bias, const std::vector<Channel>& channels, const Record& samples,
+/// The size of a bias of the sensor at `place`, as its values say it; 0 where it is not analog.
+double size_of(const SensorBias& bias, const std::vector<Channel>& channels, const Record& samples,
                Index place) {
   if (!channels[static_cast<std::size_t>(place)].is_analog) return 0;
   const auto values = samples.u.col(place).array();
-  const double deviation =
-      values.size() == 0 ? 0 : std::sqrt((values - values.mean()).square().mean());
-  return (bias.size == 0 ? 1 : bias.size) * (deviation > 0 ? deviation : 1);
+  return reident::size_of(
+      bias, values.size() == 0 ? 0 : std::sqrt((values - values.mean()).square().mean()));
 }
 
 }  // namespace
@@ -122,19 +120,14 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
     for (const SensorBias& bias : wanted->biases) {
       const Index place = std::ranges::find(expressions.parameters(), bias.sensor) -
                           expressions.parameters().begin();
-      looked.push_back({place, in_unit(bias, data.input_channels, samples, place)});
+      looked.push_back({place, size_of(bias, data.input_channels, samples, place)});
     }
     samples = rows_at(samples, wanted->ticks);
   }
   Record read = expressions.evaluate(wanted ? Record(samples) : std::move(samples));
-  for (const auto& [place, bias] : looked) {
-    Record effect =
-        without(bias_effect(expressions, place, bias, samples, read), data.plausibility.holes);
-    // The same bits where nothing depends on the size: the run then is the same one too.
-    if (!data.bias_effects.empty() && effect.u.isApprox(data.bias_effects.back().u, 1e-9))
-      effect.u = data.bias_effects.back().u;
-    data.bias_effects.push_back(std::move(effect));
-  }
+  for (const auto& [place, bias] : looked)
+    data.bias_effects.push_back(
+        without(bias_effect(expressions, place, bias, samples, read), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);
   data.record = without(std::move(read), data.plausibility.holes);
   data.coverage = coverage_of(data.record, window, request_.period);

@@ -62,15 +62,15 @@ TEST(Offset, TheOutputWhoseErrorItExplainsMostSaysHowLargeItIs) {
   EXPECT_NEAR(fit.offset(), 4, 1e-9);
 }
 
-TEST(Offset, ASensorsEffectExplainsWhatItsPastAndTheSignAllow) {
+TEST(Offset, ASensorsEffectExplainsWhatItsPastAndTheDirectionAllow) {
   // The error is -10 times the effect: an offset of 10 makes it, and one of 1.5 leaves 8.5 times.
-  for (const auto& [moved, sign, rest] :
-       {std::tuple(10.0, 0.0, 0.0), {0.0, 0.0, 8.5 * 8.5}, {10.0, 1.0, 0.0}, {10.0, -1.0, 100.0}}) {
+  for (const auto& [moved, direction, rest] :
+       {std::tuple(10.0, 0, 0.0), {0.0, 0, 8.5 * 8.5}, {10.0, 1, 0.0}, {10.0, -1, 100.0}}) {
     const SensorPast known = past(5, 100);
-    OffsetFit fit(known, sign);
+    OffsetFit fit(known, direction);
     const BlockScore block = score(0, 100, {5.5 + moved, 1, -10});
     fit.add(0, block);
-    EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(rest, 0.6))) << moved << ' ' << sign;
+    EXPECT_THAT(fit.rest(block), ElementsAre(DoubleNear(rest, 0.6))) << moved << ' ' << direction;
   }
 }
 

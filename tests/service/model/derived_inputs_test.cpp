@@ -1,7 +1,10 @@
 #include "service/model/derived_inputs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -118,14 +121,35 @@ TEST(DerivedInputs, WithoutAMistakeHaveNone) {
   EXPECT_THAT(mistakes_in(power, {"P", "u", "i"}, {"y"}), IsEmpty());
 }
 
-TEST(DerivedInputs, ASensorOfADerivedInputHasBiasesOfSeveralSizes) {
-  const std::vector<SensorBias> biases = biases_of({"w", "q", "u"}, {{"q", "u * v", ""}});
-  std::vector<std::string> sensors;
-  for (const SensorBias& bias : biases) sensors.push_back(bias.sensor);
-  EXPECT_THAT(sensors, ::testing::ElementsAre("u", "u", "u", "u", "v", "v", "v", "v", "w"));
-  EXPECT_EQ(biases[0].size, -biases[3].size);
-  EXPECT_GT(biases[2].size, 0);
-  EXPECT_EQ(biases[8].size, 0) << "its effect is a multiple of it";
+TEST(DerivedInputs, ASensorInWhichAnInputIsNotAffineHasBiasesOfSeveralSizes) {
+  const std::vector<SensorBias> biases =
+      biases_of({"w", "q", "r", "u"}, {{"q", "u * v", ""}, {"r", "2 * u ^ 0.5", ""}});
+  std::map<std::string, std::vector<int>> directions;
+  for (const SensorBias& bias : biases) directions[bias.sensor].push_back(bias.direction);
+  EXPECT_EQ(directions["v"], std::vector<int>{0});
+  EXPECT_EQ(directions["w"], std::vector<int>{0});
+  EXPECT_EQ(std::ranges::count(directions["u"], -1), bias_sizes);
+  EXPECT_EQ(std::ranges::count(directions["u"], 1), bias_sizes);
+  EXPECT_EQ(biases.front().sensor, "u");
+  EXPECT_EQ(biases.back().sensor, "w");
+}
+
+TEST(DerivedInputs, ABiasKeepsItsSizeAsLongAsTheDeviationSuitsIt) {
+  for (const double deviation : {0.9, 1.1, 1.9, 2.1, 1e-7, 3e5}) {
+    std::set<double> sizes;
+    for (int size = 0; size < bias_sizes; ++size)
+      sizes.insert(-size_of({"u", -1, size}, deviation));
+    EXPECT_EQ(sizes.size(), std::size_t{bias_sizes});
+    EXPECT_LE(*sizes.rbegin(), deviation / 2);
+    EXPECT_GT(*sizes.begin(), deviation / 65);
+  }
+  std::set<double> kept;
+  for (int size = 0; size < bias_sizes; ++size)
+    if (const double one = size_of({"u", 1, size}, 1.9); one == size_of({"u", 1, size}, 2.1))
+      kept.insert(one);
+  EXPECT_EQ(kept.size(), std::size_t{bias_sizes - 1});
+  EXPECT_EQ(size_of({"u"}, 1.9), 1.9);
+  EXPECT_EQ(size_of({"u"}, 0), 1);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "service/model/expression.hpp"
 
+#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <limits>
@@ -73,6 +74,27 @@ TEST(Expression, NamesItsParametersOnceInTheOrderOfTheirUse) {
   EXPECT_THAT(parsed("2 ^ 3").variables(), ElementsAre());
   EXPECT_THAT(parsed("absolute + maximum + min_x + e + pi").variables(),
               ElementsAre("absolute", "maximum", "min_x", "e", "pi"));
+}
+
+TEST(Expression, SaysOfWhatAChangeIsAMultiple) {
+  for (const auto& [text, affine] : {std::pair("a", true),
+                                     {"2 - a", true},
+                                     {"-a * (b - 20) / c", true},
+                                     {"a * b + a / 3", true},
+                                     {"b ^ 2 * a", true},
+                                     {"a ^ 1", false},
+                                     {"a * a", false},
+                                     {"a * (a + b)", false},
+                                     {"b / a", false},
+                                     {"max(a, 0)", false},
+                                     {"a > 0 ? b : 1", false},
+                                     {"max(b, 0) - a", true},
+                                     {"a * max(b, a)", false}}) {
+    const Expression expression = parsed(text);
+    const auto place = std::ranges::find(expression.variables(), "a");
+    EXPECT_EQ(expression.is_affine_in(std::size_t(place - expression.variables().begin())), affine)
+        << text;
+  }
 }
 
 TEST(Expression, HasNoValueWhereAParameterHasNoneEvenWhereItIsNotAskedFor) {

@@ -94,13 +94,6 @@ TEST(MemberRun, SaysWhatABiasOfASensorDoesToIt) {
   EXPECT_EQ(bias_effect_in(score, 0, 1), score.bias_effects.data());
   EXPECT_EQ(bias_effect_in(score, 0, 2), nullptr) << "rows of other biases";
   EXPECT_EQ(bias_effect_in({}, 0, 1), nullptr);
-
-  samples.bias_effects.push_back(samples.bias_effects[0]);
-  samples.bias_effects.push_back(samples.bias_effects[0]);
-  samples.bias_effects[2].u.setConstant(6);
-  score = score_block(model(), 1, samples, state);
-  EXPECT_EQ(bias_effect_in(score, 1, 3)[1], bias_effect_in(score, 0, 3)[1]);
-  EXPECT_NEAR(bias_effect_in(score, 2, 3)[1], 36 * gain * gain, 1e-9);
 }
 
 TEST(MemberRun, OfABlockWithoutSamplesHasNoRowsAndKeepsItsState) {
