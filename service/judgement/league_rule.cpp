@@ -118,7 +118,6 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
   finding.wealth_without_offset = finding.log_wealth;
   finding.mrse_without_offset = finding.champion_mrse_percent;
   const auto look_at = [&](const std::string& sensor, OffsetFit offset) {
-    if (std::ranges::count(league.unbound, sensor) == 0) return;
     std::vector<const BlockScore*> scores;  // the champion's
     for (const std::size_t i : compared.blocks) {
       scores.push_back(find(*league.champion, league.blocks[i].range.begin));
@@ -131,17 +130,19 @@ std::optional<Reason> may_be_bias(const Standard& standard, const Member& member
                *find(member, scores[k]->begin), *scores[k], offset.rest(*scores[k]));
     const double wealth = bet_on(rest.scores.values(), standard.assumed).log_wealth(),
                  error = rest.other.mrse_percent();
-    if (!leaves_enough(finding, wealth, error)) {
-      auto& best = suspects.try_emplace(sensor, INFINITY, 0).first->second;
-      best = std::min(best, {error, offset.offset()});
-    }
+    if (!leaves_enough(finding, wealth, error))
+      suspects[sensor] = std::min(suspects.try_emplace(sensor, INFINITY, 0).first->second,
+                                  {error, offset.offset()});
     finding.wealth_without_offset = std::min(finding.wealth_without_offset, wealth);
     finding.mrse_without_offset = std::min(finding.mrse_without_offset, error);
   };
-  for (std::size_t q = 0; q < league.outputs.size(); ++q) look_at(league.outputs[q], OffsetFit(q));
+  for (std::size_t q = 0; q < league.outputs.size(); ++q)
+    if (std::ranges::count(league.unbound, league.outputs[q]))
+      look_at(league.outputs[q], OffsetFit(q));
   for (std::size_t place = 0; place < league.biases.size(); ++place)
-    look_at(league.biases[place].sensor,
-            OffsetFit(past_of(standard, place), league.biases[place].direction));
+    if (const auto& [sensor, direction, size] = league.biases[place];
+        std::ranges::count(league.unbound, sensor))
+      look_at(sensor, OffsetFit(past_of(standard, place), direction));
   if (suspects.empty()) return std::nullopt;
   std::string named;
   for (const auto& [sensor, best] : suspects)
