@@ -21,14 +21,16 @@ namespace {
 
 /// WindowData::bias_effects of a bias, in its unit, of the sensor at `place` of `samples`; 0: it
 /// has no effect. Where the sensor without it would give an input that is not finite, it counts as
-/// far as that is finite. `inputs` are those of the samples that have any.
+/// far as that is finite; where most of the bias does not, in the mean of such rows, the sensor
+/// does not have it. `inputs` are those of the samples that have any.
 Record bias_effect(InputExpressions& expressions, Index place, double bias, const Record& samples,
                    const Record& inputs) {
-  constexpr double least_step = 1e-5;
+  constexpr double least_step = 1e-5, most = 0.5;
   Record effect{inputs.period_s, Matrix::Zero(inputs.rows(), inputs.u.cols()),
                 Matrix(inputs.rows(), 1), inputs.segments};
   const std::vector<Index> moved = expressions.inputs_of(place);
   Vector raw(samples.u.cols()), without(std::ssize(moved));
+  double impossible = 0, limited = 0;  // parts of the bias, over it, and rows
   for (const identification::Segment& segment : inputs.segments) {
     Index from = first_row_at(samples, segment.first_tick);
     for (Index row = segment.begin; row < segment.end; ++row, ++from) {
@@ -46,11 +48,14 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
         for (double step = bias / 2; std::abs(step) > least_step * std::abs(bias); step /= 2)
           if (is_finite_without(part + step)) part += step;
         is_finite_without(part);
+        impossible += 1 - part / bias;
+        ++limited;
       }
       for (std::size_t i = 0; i < moved.size(); ++i)
         effect.u(row, moved[i]) = (inputs.u(row, moved[i]) - without(Index(i))) / bias;
     }
   }
+  if (impossible > most * limited) effect.u.setZero();
   return effect;
 }
 

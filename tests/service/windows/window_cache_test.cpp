@@ -138,7 +138,7 @@ TEST_F(WindowCaches, ABiasOfAnInputItselfIsThatOfItsSensor) {
 }
 
 /// What the inputs are above those without the bias, at its size; below 0 there is no root, and a
-/// sensor reads too high by what it is above at most.
+/// sensor does not read too high by twice what it is above, or more.
 TEST_F(WindowCaches, SayWhatABiasDoesAtItsSizeAndAtTheEndOfWhatAnInputIsDefinedFor) {
   EquipmentConfig equipment = plant();
   equipment.inputs = {"v", "q"};
@@ -155,7 +155,9 @@ TEST_F(WindowCaches, SayWhatABiasDoesAtItsSizeAndAtTheEndOfWhatAnInputIsDefinedF
   for (std::size_t i = 0; i < 2 * bias_sizes; ++i)
     for (identification::Index row = 0; row < data.record.rows(); ++row) {
       const double bias = size_of(biases[i], deviation), u = data.bias_effects[i].y(row, 0) + 1.1;
-      const double expected = (std::sqrt(u) - std::sqrt(std::max(0.0, u - bias))) / bias;
+      const bool is_possible = bias < 0.2;  // 0.1 is the least that the root is taken of
+      const double without = std::sqrt(std::max(0.0, u - bias));
+      const double expected = is_possible ? (std::sqrt(u) - without) / bias : 0;
       EXPECT_NEAR(data.bias_effects[i].u(row, 1), expected, 0.05) << bias << ' ' << u;
     }
 }
