@@ -54,7 +54,7 @@ double OffsetFit::offset_in(std::size_t output) const {
   const double reach = deviations_of_sensor * past_->spread(), moved = departure_ / rows_,
                low = std::max<double>(moved - reach, direction_ > 0 ? 0 : -INFINITY),
                high = std::min<double>(moved + reach, direction_ < 0 ? 0 : INFINITY);
-  return low < high ? std::clamp(offset, low, high) : 0;
+  return low <= high ? std::clamp(offset, low, high) : 0;
 }
 
 double OffsetFit::offset() const {
@@ -68,9 +68,8 @@ double OffsetFit::offset() const {
 
 std::vector<double> OffsetFit::rest(const BlockScore& score) const {
   std::vector<double> squares = score.square;
-  for (std::size_t q = 0; q < squares.size(); ++q) {
+  for (std::size_t q = 0; q < squares.size(); ++q)
     squares[q] = std::max(0.0, squares[q] - explained(offset_in(q), effect_on(q, score)));
-  }
   return squares;
 }
 

@@ -51,7 +51,7 @@ class Expression {
   double evaluate(std::span<const double> values) const;
 
   /// Whether a change of the variable at `place` of variables() changes the value by a multiple of
-  /// it, the others held: its factor has no other function of this variable.
+  /// it, the others held, as the operations show: a ^ 1 is not affine in a.
   bool is_affine_in(std::size_t place) const;
 
  private:

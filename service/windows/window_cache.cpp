@@ -59,13 +59,15 @@ Record bias_effect(InputExpressions& expressions, Index place, double bias, cons
   return effect;
 }
 
-/// The size of a bias of the sensor at `place`, as its values say it; 0 where it is not analog.
-double size_of(const SensorBias& bias, const std::vector<Channel>& channels, const Record& samples,
-               Index place) {
-  if (!channels[static_cast<std::size_t>(place)].is_analog) return 0;
-  const auto values = samples.u.col(place).array();
-  return reident::size_of(
-      bias, values.size() == 0 ? 0 : std::sqrt((values - values.mean()).square().mean()));
+/// Deviation of each sensor's values.
+std::vector<double> deviations_of(const Record& samples) {
+  std::vector<double> deviations(static_cast<std::size_t>(samples.u.cols()), 0);
+  for (Index place = 0; samples.rows() > 0 && place < samples.u.cols(); ++place) {
+    const auto values = samples.u.col(place).array();
+    deviations[static_cast<std::size_t>(place)] =
+        std::sqrt((values - values.mean()).square().mean());
+  }
+  return deviations;
 }
 
 }  // namespace
@@ -115,22 +117,20 @@ std::variant<WindowData, UnknownParameter> WindowCache::load(
   data.outputs_move =
       samples.rows() > 0 && samples.y != samples.y.row(0).replicate(samples.rows(), 1);
   InputExpressions expressions(request_.inputs, request_.derived);
-  struct Looked {
-    Index place;
-    double bias;
-  };
-  std::vector<Looked> looked;
+  std::vector<std::pair<Index, double>> biases;  // places and sizes; 0: none
   if (wanted) {
     window = {wanted->ticks.begin * request_.period, wanted->ticks.end * request_.period};
+    const std::vector<double> deviations = deviations_of(samples);
     for (const SensorBias& bias : wanted->biases) {
-      const Index place = std::ranges::find(expressions.parameters(), bias.sensor) -
-                          expressions.parameters().begin();
-      looked.push_back({place, size_of(bias, data.input_channels, samples, place)});
+      const auto sensor = std::ranges::find(expressions.parameters(), bias.sensor);
+      const auto place = static_cast<std::size_t>(sensor - expressions.parameters().begin());
+      biases.emplace_back(
+          place, data.input_channels[place].is_analog ? size_of(bias, deviations[place]) : 0);
     }
     samples = rows_at(samples, wanted->ticks);
   }
   Record read = expressions.evaluate(wanted ? Record(samples) : std::move(samples));
-  for (const auto& [place, bias] : looked)
+  for (const auto& [place, bias] : biases)
     data.bias_effects.push_back(
         without(bias_effect(expressions, place, bias, samples, read), data.plausibility.holes));
   data.read_coverage = coverage_of(read, window, request_.period);

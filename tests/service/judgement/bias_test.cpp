@@ -104,7 +104,7 @@ TEST(Bias, VersionIsNoBiasOfASensorThatARelationBinds) {
   EXPECT_EQ(records.obstacle(), Code::bias_unverified);
 }
 
-// Of a root, say: an offset of 2 upwards makes the errors, and none downwards does.
+// As a root has it, an offset of 2 upwards makes the errors, and none downwards does.
 TEST(Bias, EachDirectionOfABiasIsLookedAtByItself) {
   Records records = sensor_of_an_input(0.25, 2);
   for (BlockScore& score : records.league().champion->scores) {

@@ -74,6 +74,22 @@ TEST(Offset, ASensorsEffectExplainsWhatItsPastAndTheDirectionAllow) {
   }
 }
 
+TEST(Offset, ASensorWhoseCyclesAreAllAlikeIsOffByWhatItDeparts) {
+  std::deque<BlockScore> blocks;
+  PhasedScores scores;
+  for (std::size_t i = 0; i < 10 * blocks_of_cycle; ++i) {
+    blocks.push_back(score(0, 1, {5, 1, 0}));
+    scores.emplace_back(i % blocks_of_cycle, &blocks.back());
+  }
+  const SensorPast constant(0, 1, scores);
+  ASSERT_EQ(constant.spread(), 0);
+  for (const int direction : {0, 1}) {
+    OffsetFit fit(constant, direction);
+    fit.add(0, score(0, 4, {7, 1, -2}));
+    EXPECT_EQ(fit.offset(), 2) << direction;
+  }
+}
+
 TEST(Offset, ABlockWithoutTheEffectSaysNothing) {
   const SensorPast known = past(5, 100);
   const BlockScore block = score(0, 4, {7.5, 1, -2});
