@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "identification/numerics/decompositions.hpp"
-#include "identification/simulation/free_run.hpp"
 #include "identification/simulation/hole_bridging.hpp"
 #include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/segment_run.hpp"
@@ -74,25 +73,36 @@ class Run {
   Index rows_;
 };
 
-/// What the change of the inputs does to the run's outputs, a row a row. Before the first row, and
-/// in holes, the change is what it is on the average: a constant one needs no run.
-Matrix response(identification::StateSpaceModel model, identification::Record record,
-                const Matrix& change) {
-  model.u0.setZero();
-  model.y0.setZero();
-  record.u = change;
+/// Of the rows of `errors`, which are the last of the bias's: of each output the mean square of
+/// what the bias's change of the inputs does to it, and the mean product of that and the error.
+/// Before the first row, and in holes, the change is what it is on the average. `model` has no
+/// offsets.
+std::vector<double> squares_and_products(const identification::StateSpaceModel& model,
+                                         const identification::Record& bias, const Matrix& errors,
+                                         const std::vector<double>& mean_errors) {
   const Index n = model.order();
-  const Vector usual = change.colwise().mean().transpose();
+  const Vector usual = bias.u.colwise().mean().transpose();
   const Vector steady =
       identification::solve_full_lu(Matrix::Identity(n, n) - model.A, Vector(model.B * usual));
-  const Vector spread = (change.colwise().maxCoeff() - change.colwise().minCoeff()).transpose();
-  if (spread.norm() <= 1e-11 * usual.norm())
-    return (model.C * steady + model.D * usual).transpose().replicate(change.rows(), 1);
-  Matrix outputs(record.rows(), model.outputs());
-  for (const Segment& segment : record.segments)
-    outputs.middleRows(segment.begin, segment.size()) =
-        free_run(model, record, {segment.begin, segment.end}, steady);
-  return outputs;
+  const Vector spread = (bias.u.colwise().maxCoeff() - bias.u.colwise().minCoeff()).transpose();
+  std::vector<double> result;
+  if (spread.norm() <= 1e-11 * usual.norm()) {
+    const Vector effect = model.C * steady + model.D * usual;
+    for (Index q = 0; q < effect.size(); ++q)
+      result.insert(result.end(),
+                    {effect(q) * effect(q), effect(q) * mean_errors[static_cast<std::size_t>(q)]});
+    return result;
+  }
+  Matrix effect(bias.rows(), model.outputs());
+  for (const Segment& segment : bias.segments)
+    run_segment(model, bias, segment, steady, effect, segment.begin);
+  const Index rows = errors.rows();
+  for (Index q = 0; q < effect.cols(); ++q) {
+    const auto last = effect.col(q).tail(rows);
+    for (const double sum : {last.squaredNorm(), last.dot(errors.col(q))})
+      result.push_back(sum / static_cast<double>(rows));
+  }
+  return result;
 }
 
 }  // namespace
@@ -118,12 +128,13 @@ storage::BlockScore score_block(const EquipmentModel& model, std::int64_t number
   score.mean = list(errors.colwise().mean().transpose());
   score.square = list(errors.cwiseAbs2().colwise().mean().transpose());
   score.noise = list(identification::noise_squares(y, outputs, segments));
+  identification::StateSpaceModel changes = model.dynamics;
+  changes.u0.setZero();
+  changes.y0.setZero();
   for (const identification::Record& bias : samples.bias_effects) {
-    const Matrix effect = response(model.dynamics, record, bias.u).bottomRows(rows);
     score.bias_effects.push_back(bias.y.bottomRows(rows).mean());
-    for (Index q = 0; q < effect.cols(); ++q)
-      for (const double sum : {effect.col(q).squaredNorm(), effect.col(q).dot(errors.col(q))})
-        score.bias_effects.push_back(sum / static_cast<double>(rows));
+    const auto numbers = squares_and_products(changes, bias, errors, score.mean);
+    score.bias_effects.insert(score.bias_effects.end(), numbers.begin(), numbers.end());
   }
   score.state = run.state();
   return score;

@@ -96,6 +96,25 @@ TEST(MemberRun, SaysWhatABiasOfASensorDoesToIt) {
   EXPECT_EQ(bias_effect_in({}, 0, 1), nullptr);
 }
 
+TEST(MemberRun, IsDrivenByWhatABiasDoesToItsInputRowByRow) {
+  // The sensor has it where the input is 1 alone, so that the model's response is its own output.
+  BlockSamples samples = samples_of(1, 0);
+  samples.bias_effects = {samples.record};
+  samples.bias_effects[0].y.setZero();
+  const storage::RunState state = score_block(model(), 1, samples_of(0, 0), {}).state;
+  samples.record.y.array() += 0.5;
+  const storage::BlockScore score = score_block(model(), 1, samples, state);
+  const double usual = samples.record.u.mean(), steady = 0.1 * usual / (1 - 0.95);
+  EquipmentModel plain = model();
+  plain.dynamics.y0.setZero();
+  const Vector effect =
+      free_run(plain.dynamics, samples.record, samples.record.all(), Vector::Constant(1, steady))
+          .col(0)
+          .tail(block_rows);
+  EXPECT_NEAR(score.bias_effects.at(1), effect.squaredNorm() / block_rows, 1e-9);
+  EXPECT_NEAR(score.bias_effects.at(2), 0.5 * effect.mean(), 1e-9);
+}
+
 TEST(MemberRun, OfABlockWithoutSamplesHasNoRowsAndKeepsItsState) {
   const storage::RunState state = score_block(model(), 1, samples_of(0, 0), {}).state;
   const storage::BlockScore score = score_block(model(), 1, {}, state);
