@@ -13,14 +13,19 @@
 namespace reident::identification {
 namespace {
 
+/// Fewer rows give no interval. A block is at most so long that there are as many blocks.
+constexpr Index least_rows = 50;
+constexpr Index least_blocks = 10;
 constexpr Index most_interval_blocks = 250;
 constexpr Index replicates = 1000;
 constexpr double lengthening = 3;
 constexpr std::uint32_t seed = 20170717;
 
+/// The block length, in rows, of least mean square error for the variance of a mean.
 double optimal_block(const Vector& e2, const Vector& y2, const std::vector<RowRange>& segments) {
   Series psi(e2 / e2.mean() - y2 / y2.mean(), segments);
-  return optimal_block_rows(correlated_rows(psi), e2.size());
+  const double S = correlated_rows(psi), correlated = (S * S - 1) / (2 * S);
+  return std::cbrt(1.5 * correlated * correlated * double(e2.size()));
 }
 
 /// Sums of squares over the blocks of `length` rows that start at each row, the first rows
@@ -80,12 +85,6 @@ double expanded_tail(Index blocks) {
 }
 
 }  // namespace
-
-double optimal_block_rows(double correlated_rows, Index rows) {
-  const double S = correlated_rows;
-  const double correlated = (S * S - 1) / (2 * S);
-  return std::cbrt(1.5 * correlated * correlated * double(rows));
-}
 
 std::optional<ErrorInterval> error_interval(const Matrix& y, const Matrix& y_hat,
                                             const std::vector<RowRange>& segments) {

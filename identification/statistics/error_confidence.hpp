@@ -9,14 +9,6 @@
 
 namespace reident::identification {
 
-/// Fewer rows give no interval. A block is at most so long that there are as many blocks.
-inline constexpr Index least_rows = 50;
-inline constexpr Index least_blocks = 10;
-
-/// Returns the block length, in rows, of least mean square error for the variance of a mean over
-/// `rows` rows, of which `correlated_rows` >= 1 count as one.
-double optimal_block_rows(double correlated_rows, Index rows);
-
 /// 95 % intervals of the MRSE in percent, by the circular block bootstrap.
 struct ErrorInterval {
   Vector low, high;     // p, one an output

@@ -27,6 +27,16 @@ bool InputRanges::widen(const InputRanges& other) {
   return has_grown;
 }
 
+InputRanges InputRanges::of(const std::vector<std::size_t>& places) const {
+  InputRanges result;
+  if (low.empty()) return result;
+  for (const std::size_t place : places) {
+    result.low.push_back(low.at(place));
+    result.high.push_back(high.at(place));
+  }
+  return result;
+}
+
 bool OperatingRegimes::add(InputRanges block) {
   blocks_.push_back(std::move(block));
   InputRanges cycle;

@@ -1,6 +1,7 @@
 // Operating regimes of an equipment, by the ranges of its inputs over whole operating cycles.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace reident::identification {
@@ -11,6 +12,8 @@ struct InputRanges {
 
   /// Whether the other's are not all within.
   bool widen(const InputRanges& other);
+  /// Those of the inputs at these places; empty where there are none.
+  InputRanges of(const std::vector<std::size_t>& places) const;
 };
 
 /// Cycles over which the inputs have about the same ranges are of one regime. A block is of the

@@ -59,15 +59,16 @@ void ChangeFinder::begin_anew(storage::Time since, storage::Time found) {
   last_ = change;
 }
 
-void ChangeFinder::add(const Block& block, const BlockScore& score, int regime) {
+void ChangeFinder::add(const Block& block, const BlockScore& score, int regime, int mode) {
   if (!std::isfinite(mean_log_root(score.square, score.noise))) return;
   so_far_.add(block, score.square);
   Errors& of_regime = regimes_[regime];
-  const bool grow_in_regime = of_regime.add(block, score), grow = all_.add(block, score);
+  AllErrors& all = modes_[mode];
+  const bool grow_in_regime = of_regime.add(block, score), grow = all.add(block, score);
   if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
-  if (!grow || all_.sums.blocks < blocks_of_cycle) return;
-  if (fail(all_.sums, so_far_)) return begin_anew(all_.errors.calm_until, block.range.end);
-  all_.sums = {};
+  if (!grow || all.sums.blocks < blocks_of_cycle) return;
+  if (fail(all.sums, so_far_)) return begin_anew(all.errors.calm_until, block.range.end);
+  all.sums = {};
 }
 
 }  // namespace reident

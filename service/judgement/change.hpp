@@ -20,13 +20,14 @@ struct Change {
 
 /// Finds growth of a run's errors in one of the operating regimes: another regime may be harder for
 /// a model, and is no change of the equipment, unless the model fails there beside a constant at
-/// the outputs' mean so far. A block whose outputs are as small as their sensors' noise says
-/// nothing.
+/// the outputs' mean so far. In another mode of operation it may even fail: a mode is what inputs
+/// say that the configuration names for this. A block whose outputs are as small as their sensors'
+/// noise says nothing.
 class ChangeFinder {
  public:
-  /// Takes in the next block that counts, which is of `regime`. Behind a change the errors are
-  /// judged anew.
-  void add(const storage::Block& block, const storage::BlockScore& score, int regime);
+  /// Takes in the next block that counts, which is of `regime` and of `mode`. Behind a change the
+  /// errors are judged anew.
+  void add(const storage::Block& block, const storage::BlockScore& score, int regime, int mode);
   const std::optional<Change>& last() const { return last_; }
 
  private:
@@ -48,8 +49,8 @@ class ChangeFinder {
   void begin_anew(storage::Time since, storage::Time found);
 
   std::map<int, Errors> regimes_;
-  AllErrors all_;  // of whichever regime
-  Sums so_far_;    // since the last change
+  std::map<int, AllErrors> modes_;  // each of whichever regime
+  Sums so_far_;                     // since the last change
   std::optional<Change> last_;
 };
 

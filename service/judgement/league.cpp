@@ -9,6 +9,7 @@
 #include "identification/statistics/betting.hpp"
 #include "service/judgement/coverage.hpp"
 #include "service/judgement/league_rule.hpp"
+#include "service/model/regime_inputs.hpp"
 
 namespace reident {
 namespace {
@@ -36,27 +37,25 @@ void Judge::take_in(const League& league) {
     *this = Judge(*limits_);
     champion_ = league.champion->version;
   }
-  const std::size_t seen = std::exchange(seen_, league.blocks.size());
-  bool are_other_regimes = false;
+  std::size_t seen = std::exchange(seen_, league.blocks.size()), first = seen;
   while (regimes_.numbers().size() < league.blocks.size()) {
     const Block& block = league.blocks[regimes_.numbers().size()];
-    if (regimes_.add(counts(block) ? identification::InputRanges{block.input_low, block.input_high}
-                                   : identification::InputRanges()))
-      are_other_regimes = true;
+    identification::InputRanges ranges;
+    if (counts(block)) ranges = {block.input_low, block.input_high};
+    modes_.add(ranges.of(regime_places(ranges.low.size(), limits_->regime_inputs)));
+    if (regimes_.add(std::move(ranges))) change_ = {}, first = 0;  // as where modes are others
   }
-  if (are_other_regimes) change_ = {};
-  for_each_score(league, *league.champion, INT64_MIN, are_other_regimes ? 0 : seen,
+  for_each_score(league, *league.champion, INT64_MIN, first,
                  [&](std::size_t i, const Block& block, const BlockScore& score) {
-                   change_.add(block, score, regimes_.numbers()[i]);
+                   change_.add(block, score, regimes_.numbers()[i], modes_.numbers()[i]);
                  });
-  std::size_t counted = seen;
   const auto& change = change_.last();
   if (const Time since = change ? change->since : league.champion->window.begin; since != since_) {
     since_ = since;
     compared_ = {};
-    counted = 0;
+    seen = 0;
   }
-  for_each_score(league, *league.champion, since_, counted,
+  for_each_score(league, *league.champion, since_, seen,
                  [&](std::size_t i, const Block& block, const BlockScore& score) {
                    compared_.own.add(block, score.square);
                    compared_.with_simulator.add(i, block, score, score, block.baseline_square);

@@ -23,9 +23,6 @@ struct Member {
 
 /// Bound of a block's score.
 inline constexpr double largest_score = 1;
-/// What counts as most: of the ticks of a block, which have to be believed, and of what a version
-/// gains, which an offset has to leave.
-inline constexpr double most = 0.5;
 /// What a sensor does by itself lies within so many deviations: its noise, and where its cycles go.
 inline constexpr double deviations_of_sensor = 3;
 /// Least square of an error where the sensor's noise is not known.

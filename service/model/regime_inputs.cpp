@@ -1,6 +1,7 @@
 #include "service/model/regime_inputs.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,14 @@ void add_regime_inputs(const std::vector<std::string>& regimes, std::vector<std:
       add({fmt::format("{} {}", input.name, regime_name(regime)),
            fmt::format("({}) * (({}) != 0)", input.expression, regime), input.unit});
   }
+}
+
+std::vector<std::size_t> regime_places(std::size_t inputs, int regime_inputs) {
+  if (std::cmp_less(inputs, regime_inputs)) return {};
+  const std::size_t plain = inputs - static_cast<std::size_t>(regime_inputs);
+  std::vector<std::size_t> places;
+  for (std::size_t place = plain; place < inputs; place += plain + 1) places.push_back(place);
+  return places;
 }
 
 }  // namespace reident

@@ -3,6 +3,7 @@
 // model stays linear in inputs that are derived, so that whoever can run a model can run it.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace reident {
 /// inputs finds it in these.
 void add_regime_inputs(const std::vector<std::string>& regimes, std::vector<std::string>& inputs,
                        std::vector<DerivedInput>& derived);
+
+/// Places of the inputs that are 1 within a regime, among as many of which the last so many are of
+/// regimes; none where there are fewer.
+std::vector<std::size_t> regime_places(std::size_t inputs, int regime_inputs);
 
 /// The name of the input that is 1 within the regime.
 std::string regime_name(const std::string& regime);

@@ -88,7 +88,6 @@ LeagueKeeper::LeagueKeeper(std::string spacecraft, const EquipmentConfig& equipm
       equipment_(equipment),
       reader_(spacecraft_, equipment),
       judge_(equipment) {
-  league_.unbound = unbound_parameters(equipment);
   league_.outputs = reader_.request().outputs;
   league_.biases = biases_of(reader_.request().inputs, reader_.request().derived);
 }
@@ -310,6 +309,9 @@ std::optional<storage::TimeRange> LeagueKeeper::advance(const storage::Archive& 
                                                         const storage::Registry& registry,
                                                         Time reached, const LeagueWriter& writer) {
   read_members(registry);
+  if (applying_.size() < equipment_.relations.size())
+    applying_ = applying_relations(archive, spacecraft_, equipment_);
+  league_.unbound = unbound_parameters(equipment_, applying_);
   const Duration length = reader_.length();
   const auto scored = [&](const std::optional<storage::Block>& block, Time end) {
     std::vector<storage::BlockScore> scores;

@@ -93,6 +93,7 @@ class LeagueKeeper {
   std::map<storage::Time, BlockSamples> earlier_samples_;  // that run_earlier() read last
   std::optional<storage::DecisionState> standing_;         // that the members are of
   League league_;
+  std::vector<Relation> applying_;  // of the equipment's relations
   Judge judge_;
   std::map<std::int64_t, EquipmentModel> models_;  // of the members
   std::map<std::int64_t, Waiting> waiting_;        // of these

@@ -19,16 +19,21 @@ using identification::Matrix;
 using identification::RowRange;
 using nlohmann::ordered_json;
 
-ordered_json limits_json(const EquipmentConfig& limits) {
+ordered_json limits_json(const EquipmentConfig& limits, const Plausibility& checked) {
   return {{"max_mrse_percent", limits.max_mrse_percent},
           {"margin_percent", limits.margin_percent},
           {"confidence_percent", limits.confidence_percent},
           {"min_interval_ns", limits.min_interval},
           {"cycle_ns", limits.cycle},
           {"members", limits.members},
-          {"unbound", unbound_parameters(limits)},
+          {"regime_inputs", limits.regime_inputs},
+          {"unbound", unbound_parameters(limits, checked.applied)},
           {"bias", limits.bias == BiasPolicy::wait ? "wait" : "approve"},
-          {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"}};
+          {"approval", limits.approval == ApprovalPolicy::by_hand ? "by_hand" : "automatic"},
+          {"on_failure", limits.on_failure == FailurePolicy::keep ? "keep" : "withdraw"},
+          {"baseline_mrse_percent", limits.baseline_mrse_percent
+                                        ? ordered_json(*limits.baseline_mrse_percent)
+                                        : ordered_json()}};
 }
 
 /// The champion, where it can be read and is older than the window: one that was fitted to what is
@@ -133,7 +138,7 @@ RefreshResult judge(const storage::Registry& registry, const RefreshRequest& req
     if (champion) result.champion_mrse_percent = champion_error(*champion, prepared);
     if (std::isfinite(result.champion_mrse_percent))
       prepared.evidence["champion_mrse_percent"] = result.champion_mrse_percent;
-    prepared.evidence["limits"] = limits_json(request.equipment);
+    prepared.evidence["limits"] = limits_json(request.equipment, prepared.data.plausibility);
     auto refusal = inadmissible(result.evidence, request.equipment);
     // One that errs no less than the champion would only take another's place in the league.
     if (!refusal && result.evidence.mrse_percent >= result.champion_mrse_percent)

@@ -29,6 +29,7 @@ EquipmentConfig limits_of(const ordered_json& evidence, std::vector<std::string>
   read("cycle_ns", limits.cycle);
   read("members", limits.members);
   read("unbound", unbound);
+  read("regime_inputs", limits.regime_inputs);
   if (json.value("bias", "wait") == "approve") limits.bias = BiasPolicy::approve;
   return limits;
 }

@@ -183,7 +183,7 @@ void add_reading_options(CLI::App& app, ReadingArguments& arguments) {
       "like a time)",
       "COLUMN");
   text("--time-format", arguments.time_format,
-       "iso, dmy, mdy, ymd, unix, elapsed, excel, mjd, jd, matlab, filetime, gps", "NAME");
+       "iso, dmy, mdy, ymd, unix, elapsed, excel, mjd, jd, matlab, filetime, dotnet, gps", "NAME");
   text("--time-unit", arguments.time_unit,
        "what numbers of the time count: ns, us, ms, s, min, h, d, or 10ms", "UNIT");
   text("--time-zone", arguments.time_zone,

@@ -9,7 +9,7 @@
 #include "identification/simulation/initial_state.hpp"
 #include "identification/simulation/segment_run.hpp"
 #include "identification/simulation/square_changes.hpp"
-#include "identification/statistics/comparison.hpp"
+#include "identification/statistics/sensor_noise.hpp"
 
 namespace reident {
 namespace {

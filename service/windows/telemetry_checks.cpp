@@ -65,9 +65,7 @@ void PlausibilityChecks::look(const storage::SampleReader& archive, BoundRelatio
         fmt::format("{}: telemetry has not described {}", bound.relation.name, unknown->name));
     return;
   }
-  for (const std::string& parameter : bound.parameters)
-    if (std::find(result.bound.begin(), result.bound.end(), parameter) == result.bound.end())
-      result.bound.push_back(parameter);
+  result.applied.push_back(bound.relation);
   std::vector<std::uint32_t> ids;
   for (const Channel& channel : std::get<WindowData>(described).input_channels)
     ids.push_back(channel.id);

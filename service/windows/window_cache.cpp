@@ -25,7 +25,7 @@ namespace {
 /// does not have it. `inputs` are those of the samples that have any.
 Record bias_effect(InputExpressions& expressions, Index place, double bias, const Record& samples,
                    const Record& inputs) {
-  constexpr double least_step = 1e-5, most = 0.5;
+  constexpr double least_step = 1e-5;
   Record effect{inputs.period_s, Matrix::Zero(inputs.rows(), inputs.u.cols()),
                 Matrix(inputs.rows(), 1), inputs.segments};
   const std::vector<Index> moved = expressions.inputs_of(place);

@@ -32,6 +32,14 @@ std::vector<identification::ChannelSamples> views(const std::vector<ReadChannel>
   return samples;
 }
 
+/// The parameters that the equipment's signals are, or are computed from.
+std::vector<std::string> own_parameters(const EquipmentConfig& equipment) {
+  std::vector<std::string> names =
+      InputExpressions(equipment.inputs, equipment.derived).parameters();
+  names.insert(names.end(), equipment.outputs.begin(), equipment.outputs.end());
+  return names;
+}
+
 }  // namespace
 
 WindowRequest request_of(const std::string& spacecraft, const EquipmentConfig& equipment) {
@@ -59,9 +67,7 @@ WindowRequest request_of(const EquipmentModel& model) {
 }
 
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment) {
-  std::vector<std::string> names =
-      InputExpressions(equipment.inputs, equipment.derived).parameters();
-  names.insert(names.end(), equipment.outputs.begin(), equipment.outputs.end());
+  std::vector<std::string> names = own_parameters(equipment);
   for (const Relation& relation : equipment.relations)
     for (const std::string& name : parameters_of(relation))
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -72,9 +78,22 @@ std::vector<std::string> parameters_of(const Relation& relation) {
   return InputExpressions({relation.name}, {{relation.name, relation.expression, ""}}).parameters();
 }
 
-std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment) {
-  std::vector<std::string> unbound = parameters_of(equipment);
+std::vector<Relation> applying_relations(const storage::SampleReader& archive,
+                                         const std::string& spacecraft,
+                                         const EquipmentConfig& equipment) {
+  std::vector<Relation> relations;
   for (const Relation& relation : equipment.relations)
+    if (std::ranges::all_of(parameters_of(relation), [&](const std::string& parameter) {
+          return archive.parameter(spacecraft, parameter).has_value();
+        }))
+      relations.push_back(relation);
+  return relations;
+}
+
+std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment,
+                                            const std::vector<Relation>& relations) {
+  std::vector<std::string> unbound = own_parameters(equipment);
+  for (const Relation& relation : relations)
     for (const std::string& parameter : parameters_of(relation)) std::erase(unbound, parameter);
   return unbound;
 }

@@ -13,6 +13,10 @@
 
 namespace reident {
 
+/// What counts as most, for the rule that decides on versions (service/DESIGN.md, "Constants that
+/// are not configured").
+inline constexpr double most = 0.5;
+
 /// What is read and how it is put on the grid; an equipment's configuration and a published model
 /// both say it.
 struct WindowRequest {
@@ -36,8 +40,14 @@ WindowRequest request_of(const EquipmentModel& model);
 std::vector<std::string> parameters_of(const EquipmentConfig& equipment);
 /// Returns those that a relation binds.
 std::vector<std::string> parameters_of(const Relation& relation);
-/// Parameters of the equipment that no relation binds: a bias of their sensors goes unnoticed.
-std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment);
+/// Returns those of the equipment's relations that apply: telemetry has described all that they
+/// bind. Throws storage::Error.
+std::vector<Relation> applying_relations(const storage::SampleReader& archive,
+                                         const std::string& spacecraft,
+                                         const EquipmentConfig& equipment);
+/// Parameters of the equipment that none of these binds: a bias of their sensors goes unnoticed.
+std::vector<std::string> unbound_parameters(const EquipmentConfig& equipment,
+                                            const std::vector<Relation>& relations);
 
 /// A parameter as telemetry describes it.
 struct Channel {
@@ -60,8 +70,8 @@ struct Implausible {
 struct Plausibility {
   std::vector<Implausible> found;
   std::vector<std::string> not_applied;  // relations, each with the reason
-  std::vector<std::string> bound;        // parameters of relations that applied, each once
-  identification::TickSet holes;         // all that was found
+  std::vector<Relation> applied;
+  identification::TickSet holes;  // all that was found
 };
 
 /// The samples of a window, and what they are.

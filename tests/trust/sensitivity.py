@@ -29,7 +29,7 @@ CONSTANTS = [
     ("cycles before", "service/windows/block_reader.hpp", "int cycles_before = {};", "4", "2", "8"),
     ("fault limit", "service/windows/block_reader.cpp", "most_faults = {};", "1.0 / 400", "1.0 / 800",
      "1.0 / 200"),
-    ("most", "service/judgement/scores.hpp", "double most = {};", "0.5", "1.0 / 3", "2.0 / 3"),
+    ("most", "service/windows/window_data.hpp", "double most = {};", "0.5", "1.0 / 3", "2.0 / 3"),
     ("width of a regime", "identification/statistics/operating_regimes.cpp", "regime_width = {};", "0.25",
      "0.125", "0.5"),
     ("reference", "identification/statistics/betting.hpp", "cycles_to_measure = {};", "8", "4", "16"),

@@ -7,6 +7,7 @@
 namespace reident::test::operating_regimes_test {
 namespace {
 
+using identification::InputRanges;
 using identification::OperatingRegimes;
 
 constexpr std::size_t cycle = 4;
@@ -37,6 +38,14 @@ TEST(OperatingRegimes, ABlockThatDoesNotCountIsOfNone) {
   EXPECT_FALSE(regimes.add({}));
   regimes.add({{0}, {1}});
   EXPECT_EQ(regimes.numbers(), (std::vector{0, -1, 0}));
+}
+
+TEST(InputRanges, OfSomeInputsAreTheirs) {
+  const InputRanges ranges{{1, 2, 3}, {4, 5, 6}};
+  EXPECT_EQ(ranges.of({2, 0}).low, (std::vector<double>{3, 1}));
+  EXPECT_EQ(ranges.of({2, 0}).high, (std::vector<double>{6, 4}));
+  EXPECT_TRUE(ranges.of({}).low.empty());
+  EXPECT_TRUE(InputRanges().of({1}).low.empty()) << "of a block that does not count";
 }
 
 TEST(OperatingRegimes, ChangeTheirNumbersWhereTheWholeRangeGrows) {

@@ -14,6 +14,9 @@ TEST(RegimeInputs, AreAnOffsetAndEachInputWithinTheRegime) {
   add_regime_inputs({"ECL", "I < 0.1"}, inputs, derived);
   EXPECT_THAT(inputs, ElementsAre("U", "P", "in ECL", "U in ECL", "P in ECL", "in I < 0.1",
                                   "U in I < 0.1", "P in I < 0.1"));
+  EXPECT_THAT(regime_places(inputs.size(), 6), ElementsAre(2, 5));
+  EXPECT_THAT(regime_places(2, 0), ElementsAre());
+  EXPECT_THAT(regime_places(0, 6), ElementsAre());
   EXPECT_TRUE(mistakes_in(derived, inputs, {"Y"}).empty());
   EXPECT_EQ(derived[3].unit, "W");
   InputExpressions expressions(inputs, derived);

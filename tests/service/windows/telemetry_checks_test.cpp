@@ -106,6 +106,13 @@ TEST_F(FaultySensors, AreNoConcernOfARelationThatNobodyHasDescribed) {
   const RefreshResult result = run(day + 20 * minute, equipment);
   EXPECT_EQ(result.attempt.outcome, "challenger") << result.attempt.reason;
   EXPECT_THAT(result.attempt.evidence_json, HasSubstr("telemetry has not described y3"));
+  const auto unbound = [](const RefreshResult& of) {
+    return nlohmann::json::parse(of.attempt.evidence_json)["limits"]["unbound"];
+  };
+  EXPECT_EQ(unbound(result), nlohmann::json({"u", "v", "y"}));
+  EXPECT_EQ(unbound(run(day + 20 * minute)), nlohmann::json({"u", "v"}));
+  EXPECT_TRUE(applying_relations(archive, "SAT", equipment).empty());
+  EXPECT_EQ(applying_relations(archive, "SAT", bound()).size(), 1);
 }
 
 TEST_F(FaultySensors, GiveTheSameBitsWhateverWasKeptOfEarlierWindows) {
