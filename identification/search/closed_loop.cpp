@@ -69,12 +69,14 @@ Matrix of_inputs(PreparedRows& rows, const Identified& identified) {
   return result;
 }
 
-std::string who_follows(const std::vector<Feedback>& feedback, const PreparedRows& rows) {
+/// Each input and output, with such words between them.
+std::string pairs_of(const std::vector<Feedback>& feedback, const std::string& between,
+                     const PreparedRows& rows) {
   const Normalisation& channels = rows.normalisation();
   std::string who;
   for (const Feedback& one : feedback)
     who += (who.empty() ? "" : ", ") +
-           rows.input_name(channels.inputs[static_cast<std::size_t>(one.input)]) + " follows " +
+           rows.input_name(channels.inputs[static_cast<std::size_t>(one.input)]) + between +
            channel_name("output", channels.outputs[static_cast<std::size_t>(one.output)],
                         rows.options().output_names);
   return who;
@@ -106,6 +108,43 @@ bool mostly_repeats(const Vector& values, RowRange rows) {
   return 2 * repeats > rows.size();
 }
 
+/// The inputs that follow outputs. It warns of commands whose steps an output shows a row before,
+/// and leaves them out: its newest row alone shows them, as a model that explains most of it lets
+/// expect. It was read later. A controller works against what the output does, or sees more of it.
+std::vector<Feedback> followers(PreparedRows& rows, const StateSpaceModel& model,
+                                RowRange looked_at, const Matrix& explained,
+                                std::vector<std::string>& warnings) {
+  const Normalisation& channels = rows.normalisation();
+  const Record& record = rows.normalised();
+  std::vector<Feedback> feedback = feedback_of(record, looked_at, past, explained);
+  if (feedback.empty()) return feedback;
+  const std::vector<Feedback> older = feedback_of(record, looked_at, past, explained, 1);
+  const auto is_early = [&](const Feedback& one) {
+    const double response =
+        step_response(model, channels.outputs[static_cast<std::size_t>(one.output)],
+                      channels.inputs[static_cast<std::size_t>(one.input)], past);
+    const auto of_output = [&](const Matrix& values) -> Vector {
+      const auto part = values.col(one.output).segment(looked_at.begin, looked_at.size());
+      return part.array() - part.mean();
+    };
+    const double left = of_output(record.y - explained).squaredNorm();
+    return one.rises == (response > 0) &&
+           left < (1 - dominant_share) * of_output(record.y).squaredNorm() &&
+           mostly_repeats(record.u.col(one.input), looked_at) &&
+           std::none_of(older.begin(), older.end(), [&](const Feedback& other) {
+             return other.input == one.input && other.output == one.output;
+           });
+  };
+  const auto early = std::stable_partition(feedback.begin(), feedback.end(), std::not_fn(is_early));
+  if (early != feedback.end())
+    warnings.push_back(
+        pairs_of({early, feedback.end()}, " changes up to a row behind ", rows) +
+        ": they are not sampled at one time, as where one is read later than the other, "
+        "and the model takes them for simultaneous");
+  feedback.erase(early, feedback.end());
+  return feedback;
+}
+
 /// LoopModel::log_variance of what is left of the outputs.
 double log_variance_of_rest(const Matrix& y, const Matrix& explained, RowRange rows) {
   const Matrix rest = (y - explained).middleRows(rows.begin, rows.size());
@@ -122,9 +161,10 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
   const RowRange looked_at{std::max<Index>(0, fitted - most_rows), fitted};
   const Record& record = rows.normalised();
   const Matrix explained = of_inputs(rows, identified);
-  const std::vector<Feedback> feedback = feedback_of(record, looked_at, past, explained);
+  const std::vector<Feedback> feedback =
+      followers(rows, identified.model, looked_at, explained, warnings);
   if (feedback.empty()) return std::nullopt;
-  const std::string who = who_follows(feedback, rows);
+  const std::string who = pairs_of(feedback, " follows ", rows);
 
   if (std::any_of(feedback.begin(), feedback.end(),
                   [](const Feedback& one) { return one.share > whole_share; }))
@@ -140,9 +180,10 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     return std::nullopt;
   }
   const auto certain = [&loops](const auto& figure) { return is_above_zero(loops, figure); };
-  const bool runs_away =
-      double(looked_at.size()) * std::log(spectral_radius(loops.front().model)) > least_growth;
-  if (runs_away &&
+  const auto runs_away = [](const LoopModel& loop, Index within) {
+    return double(within) * std::log(spectral_radius(loop.model)) > least_growth;
+  };
+  if (runs_away(loops.front(), looked_at.size()) &&
       log_variance_of_rest(record.y, explained, looked_at) > loops.front().log_variance &&
       certain([](const StateSpaceModel& loop) { return spectral_radius(loop) - 1; }))
     return Verdict{VerdictCode::closed_loop,
@@ -190,7 +231,8 @@ std::optional<Verdict> closed_loop_verdict(PreparedRows& rows, const Identified&
     const double of_loop = unit * step_response(loops.front().model, one.output, one.input, after);
     const auto has_far_more = [&](const LoopModel& loop) {
       const double response = unit * step_response(loop.model, one.output, one.input, after);
-      return response * of_loop > 0 && std::abs(response) > far_more * std::abs(own);
+      return !runs_away(loop, after) && response * of_loop > 0 &&
+             std::abs(response) > far_more * std::abs(own);
     };
     const std::string responses = "; in this model " + of_output + " moves by " + four_digits(own) +
                                   " in the " + std::to_string(after) + " rows after a step of " +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identification/numerics/decompositions.hpp"
+#include "identification/simulation/nearly_empty.hpp"
 #include "identification/simulation/state_observation.hpp"
 
 namespace reident::identification {
@@ -50,11 +51,13 @@ UncertainState through_hole(const StateSpaceModel& model, const Record& record,
                           changes.usual * (1 + double(hole) / 4) +
                           changes.mean * (std::max(0.0, double(hole) - short_hole) / 4);
   UncertainState result{x, Matrix::Zero(x.size(), x.size())};
+  const auto A = nearly_empty(model.A);
+  const Matrix driven = model.B * variance.asDiagonal() * model.B.transpose();
   Matrix P = Matrix::Zero(x.size(), x.size());
   for (Index k = 0; k < hole; ++k) {
     result.x = (model.A * result.x + model.B * inputs.col(k)).eval();
-    P = (model.A * P * model.A.transpose() + model.B * variance.asDiagonal() * model.B.transpose())
-            .eval();
+    P = A ? Matrix(*A * P * A->transpose()) : Matrix(model.A * P * model.A.transpose());
+    P += driven;
   }
   if (!P.allFinite()) return result;
   const SymmetricEigen eigen = symmetric_eigen(P);

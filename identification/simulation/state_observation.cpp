@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identification/simulation/nearly_empty.hpp"
 #include "identification/simulation/segment_run.hpp"
 
 namespace reident::identification {
@@ -10,6 +11,11 @@ Matrix observability_of(const StateSpaceModel& model, Index count) {
   const Index p = model.outputs();
   Matrix observability(count * p, model.order());
   observability.topRows(p) = model.C;
+  if (const auto A = nearly_empty(model.A)) {
+    for (Index row = p; row < count * p; row += p)
+      observability.middleRows(row, p) = observability.middleRows(row - p, p) * *A;
+    return observability;
+  }
   Matrix power = model.A;  // A^known
   for (Index known = 1; known < count; known *= 2) {
     const Index more = std::min(known, count - known);

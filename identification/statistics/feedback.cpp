@@ -26,12 +26,14 @@ constexpr double nothing_left = 1e-12;  // of an input's square: below it nothin
 struct Past {
   Index of_inputs;
   Index rows;
+  Index unseen;  // newest rows of the outputs, which are not
   std::vector<Index> rhythms{};
 
   Index longest() const {
-    return rhythms.empty() ? of_inputs
-                           : std::max(of_inputs, *std::max_element(rhythms.begin(), rhythms.end()) +
-                                                     around_rhythm);
+    const Index of_all = std::max(of_inputs, unseen + rows);
+    return rhythms.empty() ? of_all
+                           : std::max(of_all, *std::max_element(rhythms.begin(), rhythms.end()) +
+                                                  around_rhythm);
   }
   /// Numbers known, with m inputs and p outputs.
   Index known(Index m, Index p) const {
@@ -86,7 +88,7 @@ std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
       for (Index i = -around_rhythm; i <= around_rhythm; ++i)
         row(column++) = record.u(t - past.rhythms[j] + i, static_cast<Index>(j));
     for (Index q = 0; q < p; ++q)
-      for (Index i = 1; i <= past.rows; ++i) row(column++) = record.y(t - i, q);
+      for (Index i = 1; i <= past.rows; ++i) row(column++) = record.y(t - past.unseen - i, q);
     row.tail(m) = record.u.row(t);
   });
   const Matrix triangle = triangular_factor(columns);
@@ -104,7 +106,7 @@ std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
   for (Index q = 0; q < p; ++q) {
     Matrix beside(told + m, past.rows + m);
     beside << left.middleCols(q * past.rows, past.rows), left.rightCols(m);
-    const Matrix inputs = triangular_factor(beside).rightCols(m);
+    const Matrix factor = triangular_factor(beside), inputs = factor.rightCols(m);
     for (Index i = 0; i < m; ++i) {
       const double all = left.rightCols(m).col(i).squaredNorm();
       if (!(all > nothing_left * triangle.rightCols(m).col(i).squaredNorm())) continue;
@@ -113,7 +115,7 @@ std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
       const double share = explained.squaredNorm() / all;
       if (share >= least_share && (is_explained(explained.head(few).squaredNorm() / all, few) ||
                                    is_explained(share, past.rows)))
-        found.push_back({i, q, share});
+        found.push_back({i, q, share, explained(0) * factor(0, 0) > 0});
     }
   }
   return found;
@@ -122,13 +124,13 @@ std::optional<std::vector<Feedback>> feedback_beside(const Record& record,
 }  // namespace
 
 std::vector<Feedback> feedback_of(const Record& record, RowRange rows, Index past,
-                                  const Matrix& of_inputs) {
+                                  const Matrix& of_inputs, Index unseen) {
   assert(of_inputs.rows() == record.rows() && of_inputs.cols() == record.y.cols());
   const std::vector<Segment> segments = segments_within(record, rows);
-  auto found =
-      feedback_beside(record, segments, {past, past}, of_inputs).value_or(std::vector<Feedback>());
+  auto found = feedback_beside(record, segments, {past, past, unseen}, of_inputs)
+                   .value_or(std::vector<Feedback>());
   if (found.empty()) return found;
-  Past with_rhythms{past, past};
+  Past with_rhythms{past, past, unseen};
   const std::vector<RowRange> ranges = ranges_from(record, rows);
   const Index m = record.u.cols();
   for (Index i = 0; i < m; ++i)

@@ -120,7 +120,8 @@ std::variant<std::int64_t, Refusal> period_of(const GridRequest& request, const 
                     "least {}{}",
                     *request.period_s, slowest.name, duration_text(slowest.step_ns),
                     sample_hold_periods, hold_text(least), hold_advice)};
-  if (period < slowest.step_ns && !request.hold_ns)
+  constexpr std::int64_t hardly_any = 1000;  // one row in so many is repeated
+  if (period < slowest.step_ns - slowest.step_ns / hardly_any && !request.hold_ns)
     warnings.push_back(fmt::format(
         "--period {} is shorter than {}, the usual step of {}: its values are repeated, and the "
         "model has the repeats in it",

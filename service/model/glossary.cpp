@@ -69,7 +69,9 @@ struct Glossary {
        "Make room, or give the archive a max_size."},
       {"error_above_limit", "error above the limit",
        "The model's error on telemetry that it was not fitted to is above max_mrse.",
-       "More inputs, a longer window, or a higher limit."},
+       "More inputs, a longer window, or a higher limit. The error is relative to the output's "
+       "root "
+       "mean square: one that moves around 0 has a larger one than one far from it."},
       {"first_version", "the first version",
        "There was no champion, and the version is good on a whole operating cycle.", ""},
       {"held", "waits: the equipment is held",
@@ -209,16 +211,17 @@ struct Glossary {
        "it on what follows, and a good version on what came before. This one errs more than twice "
        "as much there, or than another version on both sides. It fits the few days since, or one "
        "mode of operation, and not how the equipment is used.",
-       "Nothing: a later window shows more of it."},
+       "A later window shows more of it. Where the mode is a parameter, name it in 'regimes'."},
       {"worse_in_regime", "worse in an operating regime",
        "The version is worse than the champion, with confidence, in an operating regime that "
        "this has served.",
-       ""},
+       "Windows with more of the regime decide by themselves; 'reident approve' decides now."},
       {"worse_over_regimes", "no better over all regimes",
        "Over the operating regimes since the last change of the equipment, each with its share of "
        "the time, the version errs no less than the champion. It was run on the last cycles of "
        "those that its record does not have.",
-       ""},
+       "Telemetry decides by itself, as the share of what is now grows; where the equipment has "
+       "changed and no change was found, 'reident approve' decides now."},
   };
 };
 

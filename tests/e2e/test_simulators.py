@@ -147,6 +147,7 @@ class Simulators(EndToEnd):
         row = self.wait_for_row("the refusal is listed", version=1)
         self.assertIn("two services", row["refused"]["reason"])
         other.publish(3, model=model(gain=2.0))
+        self.wait_for(simulator, "adopted", 2)  # two writers have no order of their own
         one.publish(2)
         self.assertIn("older than version 3", self.wait_for(simulator, "refused", 2)["reason"])
         self.assert_goes_on(simulator, 3)

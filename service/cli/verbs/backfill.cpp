@@ -1,6 +1,8 @@
 #include "service/operations/backfill.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,6 +21,8 @@
 #include "service/support/text.hpp"
 #include "service/support/time_text.hpp"
 #include "service/support/utc_clock.hpp"
+#include "service/windows/window_data.hpp"
+#include "storage/archive/holdings.hpp"
 
 namespace reident::cli::backfill_verb {
 namespace {
@@ -50,6 +54,39 @@ std::variant<BackfillRequest, Refusal> request_of(const Arguments& arguments,
   }
   return Refusal{fmt::format("the configuration has no equipment {}; it has {}", arguments.subject,
                              joined(names))};
+}
+
+/// Says of each equipment that is wanted what of it no telemetry has. Returns whether there is one
+/// of which it has all.
+bool say_what_is_unknown(const storage::Database& database, const Config& config,
+                         const BackfillRequest& wanted) {
+  constexpr std::ptrdiff_t most_named = 20;
+  std::map<std::string, std::vector<std::string>> known;  // by spacecraft
+  for (const storage::SeriesInfo& series : storage::all_series(database))
+    if (series.origin == storage::Origin::real) known[series.spacecraft].push_back(series.name);
+  bool is_any_known = false;
+  for (const SpacecraftConfig& spacecraft : config.spacecraft)
+    for (const EquipmentConfig& equipment : spacecraft.equipment) {
+      if ((!wanted.spacecraft.empty() && wanted.spacecraft != spacecraft.name) ||
+          (!wanted.equipment.empty() && wanted.equipment != equipment.name))
+        continue;
+      const std::vector<std::string>& names = known[spacecraft.name];
+      std::vector<std::string> unknown;
+      for (const std::string& parameter : parameters_of(equipment))
+        if (!std::ranges::count(names, parameter))
+          unknown.push_back(parameter + did_you_mean(parameter, names));
+      is_any_known = is_any_known || unknown.empty();
+      if (unknown.empty()) continue;
+      std::vector<std::string> some(
+          names.begin(), names.begin() + std::min<std::ptrdiff_t>(std::ssize(names), most_named));
+      if (some.size() < names.size()) some.push_back("...");
+      print_error(
+          "reident: {}/{}: no telemetry has {}; {} has {}: correct the configuration, or "
+          "import what is missing",
+          spacecraft.name, equipment.name, joined(unknown), spacecraft.name,
+          names.empty() ? "none" : joined(some));
+    }
+  return is_any_known;
 }
 
 void print(const BackfillProgress& progress, storage::Database& database, bool json) {
@@ -91,6 +128,7 @@ int run(const Arguments& arguments) {
                        "records attempts: it tries what it has telemetry of by itself",
                        config->database.string())});
     const auto& wanted = std::get<BackfillRequest>(request);
+    const bool is_any_known = say_what_is_unknown(database, *config, wanted);
     for (const std::string& sentence :
          advised_phases(database, *config, wanted.spacecraft, wanted.equipment))
       print_error("reident: {}", sentence);
@@ -107,6 +145,7 @@ int run(const Arguments& arguments) {
         });
     bar.clear();
     print(progress, database, arguments.json);
+    if (progress.windows == 0 && !is_any_known) return exit_impossible;
     return progress.done == progress.windows ? exit_done : exit_failed;
   });
 }

@@ -99,7 +99,7 @@ void warn_of_useless_outputs(const IdentifyData& data, IdentifyOutcome& outcome)
         std::sqrt((rows.tail(rows.size() - 1) - rows.head(rows.size() - 1)).squaredNorm() / 2 /
                   static_cast<double>(rows.size()));
     const double resolution = identification::resolution(data.record.y.col(q));
-    const double rounding = 1e-9 * std::abs(rows(0));
+    const double rounding = 1e-12 * std::abs(rows(0));
     if (rows.maxCoeff() - rows.minCoeff() <= resolution + rounding)
       outcome.warnings.push_back(fmt::format(
           "the validation rows of {} are constant: they say nothing about the fit. {}{} is "

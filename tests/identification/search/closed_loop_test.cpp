@@ -289,6 +289,31 @@ TEST(ClosedLoop, FeedbackIsFoundBesideAPeriodicReference) {
   EXPECT_EQ(found, 20);
 }
 
+TEST(ClosedLoop, AnOutputThatIsReadLaterInTheRowThanItsCommandIsNoController) {
+  // The command steps at any time; where it does between the two, the output shows it a row before.
+  constexpr Index parts = 20, rows = 3000;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test::Noise noise(seed);
+    const Index later = seed % 2 == 0 ? 10 : 15;
+    const double tau = seed % 3 == 0 ? 2 : 0.5, a = std::exp(-1 / (tau * parts));
+    Matrix u(rows, 1), y(rows, 1);
+    double x = 0, command = 0;
+    for (Index part = 0; part < rows * parts; ++part) {
+      if (noise.uniform() < 0.1 / parts) command = noise.normal();
+      if (part % parts == 0) u(part / parts) = command;
+      if (part % parts == later) y(part / parts) = x + 0.04 * noise.normal();
+      x = a * x + 2 * (1 - a) * command;
+    }
+    const Record record = contiguous_record(1, u, y);
+    const IdentifyResult result = identify(record, record.all(), {});
+    const auto* found = std::get_if<Identified>(&result);
+    ASSERT_NE(found, nullptr) << seed << ": " << std::get<Verdict>(result).reason;
+    EXPECT_NEAR((*static_gain(found->model))(0, 0), 2, 0.1) << seed;
+    EXPECT_THAT(found->warnings, Contains(HasSubstr("not sampled at one time"))) << seed;
+    EXPECT_THAT(found->warnings, Not(Contains(HasSubstr("closed loop")))) << seed;
+  }
+}
+
 TEST(ClosedLoop, AStablePlantWithTheRightGainKeepsItsModelWithAWarning) {
   test::Noise noise(1);
   const Record record = recorded({0.8, 0.4, 0.3}, noise, 3000, 0.03);

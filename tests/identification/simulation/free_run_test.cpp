@@ -98,6 +98,36 @@ TEST(FreeRun, OfAnUnstableModelMayOverflowButEnds) {
   EXPECT_FALSE(free_run(model, record, record.all()).allFinite());
 }
 
+TEST(FreeRun, OfManyStatesThatHandOnAValueIsThatOfTheModelAfterADelay) {
+  constexpr Index delay = 40, rows = 300;
+  test::Noise noise(4);
+  const StateSpaceModel model = with_operating_point(noise);
+  StateSpaceModel delayed = model;  // its first input acts after so many rows
+  const Index n = model.order(), all = n + delay;
+  delayed.A = Matrix::Zero(all, all);
+  delayed.A.topLeftCorner(n, n) = model.A;
+  delayed.A.col(all - 1).head(n) = model.B.col(0);
+  delayed.A.block(n + 1, n, delay - 1, delay - 1).setIdentity();
+  delayed.B = Matrix::Zero(all, 2);
+  delayed.B.col(1).head(n) = model.B.col(1);
+  delayed.B(n, 0) = 1;
+  delayed.C = Matrix::Zero(2, all);
+  delayed.C.leftCols(n) = model.C;
+  delayed.C.col(all - 1) = model.D.col(0);
+  delayed.D.col(0).setZero();
+  const Matrix u = noise.normal(rows, 2);
+  Matrix shifted = u;
+  shifted.col(0).head(delay).setConstant(model.u0(0));
+  shifted.col(0).tail(rows - delay) = u.col(0).head(rows - delay);
+  const Matrix y = test::simulated(model, shifted, Vector::Zero(n));
+  const Record record = contiguous_record(1, u, y);
+  const Vector at_rest = Vector::Zero(all);
+  EXPECT_LT((free_run(delayed, record, record.all(), at_rest) - y).cwiseAbs().maxCoeff(), 1e-12);
+  const Record holed = test::with_gap(record, 100, 110);
+  const Matrix bridged = free_run(delayed, holed, holed.all(), at_rest);
+  EXPECT_LT((bridged.bottomRows(100) - y.bottomRows(100)).norm(), 1e-3 * y.bottomRows(100).norm());
+}
+
 TEST(FreeRun, OfNoRowsIsEmpty) {
   test::Noise noise(3);
   const Record record = contiguous_record(1, noise.normal(5, 2), noise.normal(5, 2));

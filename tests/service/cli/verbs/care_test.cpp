@@ -161,6 +161,18 @@ TEST_F(Care, WhatChangesADatabaseMakesNone) {
     EXPECT_FALSE(file.path().filename().string().starts_with("mistyped.db")) << file.path();
 }
 
+TEST_F(Care, BackfillNamesParametersThatNoTelemetryHas) {
+  append(600, 20000);
+  write("reident.toml",
+        "[archive]\ndatabase = \"reident.db\"\n[[spacecraft]]\nname = \"CB4\"\n"
+        "[[spacecraft.equipment]]\nname = \"BDR\"\ninputs = [\"I_BUSS\"]\noutputs = "
+        "[\"V_BUSS\"]\nsample_period = \"1s\"\nwindow = \"30min\"\n");
+  const test::Ran ran = reident({"backfill", "--config", "reident.toml"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("CB4/BDR: no telemetry has I_BUSS"));
+  EXPECT_THAT(ran.err, HasSubstr("V_BUSS"));
+}
+
 TEST_F(Care, RetainRemovesByAgeAndSaysSoBeforehand) {
   append(600, 20000);  // a chunk and a part of a second
   const json plan = json_of({"retain", "reident.db", "--keep", "1h", "--dry-run"});
