@@ -115,11 +115,7 @@ bool TelemetryWatch::is_configured(const std::string& spacecraft) const {
 
 std::string TelemetryWatch::unknown_text(const Equipment& equipment,
                                          const Spacecraft& spacecraft) const {
-  const std::vector<std::string> known = names_of(spacecraft.names);
-  std::string text;
-  for (const std::string& name : equipment.parameters)
-    if (!contains(known, name))
-      text += (text.empty() ? "" : "; ") + name + did_you_mean(name, known);
+  const std::string text = unknown_among(equipment.parameters, names_of(spacecraft.names));
   if (text.empty()) return text;
   return fmt::format("No telemetry has {}. Correct the configuration, or look for the source.",
                      text);

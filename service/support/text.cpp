@@ -61,6 +61,15 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return found.empty() ? "" : " (did you mean " + std::string(found) + "?)";
 }
 
+std::string unknown_among(const std::vector<std::string>& names,
+                          const std::vector<std::string>& known) {
+  std::string text;
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      text += (text.empty() ? "" : "; ") + name + did_you_mean(name, known);
+  return text;
+}
+
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);

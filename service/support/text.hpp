@@ -37,6 +37,10 @@ std::string_view nearest(std::string_view name, const std::vector<std::string>& 
 /// " (did you mean X?)", or nothing where no candidate is near.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
+/// Returns the names that are none of `known`, each with did_you_mean(); empty where all are known.
+std::string unknown_among(const std::vector<std::string>& names,
+                          const std::vector<std::string>& known);
+
 /// Returns the lines of a text, without their ends.
 std::vector<std::string> lines_of(const std::string& text);
 

@@ -73,8 +73,8 @@ class Run {
   Index rows_;
 };
 
-/// Of the rows of `errors`, which are the last of the bias's: of each output the mean square of
-/// what the bias's change of the inputs does to it, and the mean product of that and the error.
+/// Returns for each output the mean square of what the bias's change of the inputs does to it, and
+/// the mean product of that and the error, over the rows of `errors`: the last ones of the bias's.
 /// Before the first row, and in holes, the change is what it is on the average. `model` has no
 /// offsets.
 std::vector<double> squares_and_products(const identification::StateSpaceModel& model,

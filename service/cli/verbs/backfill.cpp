@@ -71,10 +71,7 @@ bool say_what_is_unknown(const storage::Database& database, const Config& config
           (!wanted.equipment.empty() && wanted.equipment != equipment.name))
         continue;
       const std::vector<std::string>& names = known[spacecraft.name];
-      std::vector<std::string> unknown;
-      for (const std::string& parameter : parameters_of(equipment))
-        if (!std::ranges::count(names, parameter))
-          unknown.push_back(parameter + did_you_mean(parameter, names));
+      const std::string unknown = unknown_among(parameters_of(equipment), names);
       is_any_known = is_any_known || unknown.empty();
       if (unknown.empty()) continue;
       std::vector<std::string> some(
@@ -83,7 +80,7 @@ bool say_what_is_unknown(const storage::Database& database, const Config& config
       print_error(
           "reident: {}/{}: no telemetry has {}; {} has {}: correct the configuration, or "
           "import what is missing",
-          spacecraft.name, equipment.name, joined(unknown), spacecraft.name,
+          spacecraft.name, equipment.name, unknown, spacecraft.name,
           names.empty() ? "none" : joined(some));
     }
   return is_any_known;

@@ -25,6 +25,12 @@ TEST(Nearest, IsSilentWhereNothingIsNear) {
   EXPECT_EQ(did_you_mean("histroy", {"history"}), " (did you mean history?)");
 }
 
+TEST(UnknownAmong, NamesThoseThatAreNotKnownAndWhatIsNear) {
+  EXPECT_EQ(unknown_among({"V_BUS", "I_BUSS", "x"}, {"I_BUS", "V_BUS"}),
+            "I_BUSS (did you mean I_BUS?); x");
+  EXPECT_EQ(unknown_among({"V_BUS"}, {"V_BUS"}), "");
+}
+
 TEST(SplitNames, IsTheReverseOfJoined) {
   EXPECT_THAT(split_names("SAT/A, SAT/B"), ElementsAre("SAT/A", "SAT/B"));
   EXPECT_THAT(split_names(""), IsEmpty());
