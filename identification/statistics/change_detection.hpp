@@ -3,6 +3,9 @@
 // is enough: it takes several in a row. Nothing here throws.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "identification/numerics/matrix.hpp"
 
 namespace reident::identification {
@@ -29,11 +32,15 @@ class ChangeDetector {
   double statistic() const { return sum_; }
   double mean() const { return mean_; }
 
+  /// Behind a change: with how many of the last blocks it may have begun, at the most.
+  Index blocks_since() const;
+
  private:
   double mean_;
   double deviation_;
   double allowance_;
   double sum_ = 0;
+  std::vector<std::pair<double, double>> risen_;  // z, at most 6, and weight: since the sum was 0
 };
 
 }  // namespace reident::identification

@@ -28,6 +28,8 @@ class ErrorGrowth {
   bool add(const BlockError& block);
   /// Whether nothing speaks for growth since the last block.
   bool is_calm() const { return !detector_ || detector_->statistic() == 0; }
+  /// Where growth was found: with how many of the last blocks it may have begun, at the most.
+  Index blocks_since() const { return detector_->blocks_since(); }
 
  private:
   Vector terms_of(const BlockError& block) const;

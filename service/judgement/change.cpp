@@ -37,20 +37,16 @@ bool fail(const Sums& errors, const Sums& so_far) {
 
 }  // namespace
 
-bool ChangeFinder::Errors::add(const Block& block, const BlockScore& score) {
-  const bool grows = growth.add({static_cast<identification::Index>(phase_of(block)),
-                                 mean_log_root(score.square, score.noise),
-                                 mean_log_root(block.output_square, score.noise),
-                                 share_above(score.noise, block.output_square)});
-  if (!grows && growth.is_calm()) calm_until = block.range.end;
-  return grows;
-}
-
-bool ChangeFinder::AllErrors::add(const Block& block, const BlockScore& score) {
-  sums.add(block, score.square);
-  have_grown = have_grown || errors.add(block, score);
-  if (!have_grown && errors.growth.is_calm()) sums = {};
-  return have_grown;
+std::optional<storage::Time> ChangeFinder::Errors::add(const Block& block,
+                                                       const BlockScore& score) {
+  begins.push_back(block.range.begin);
+  if (growth.add({static_cast<identification::Index>(phase_of(block)),
+                  mean_log_root(score.square, score.noise),
+                  mean_log_root(block.output_square, score.noise),
+                  share_above(score.noise, block.output_square)}))
+    return *(begins.end() - growth.blocks_since());
+  if (growth.is_calm()) begins.clear();
+  return std::nullopt;
 }
 
 void ChangeFinder::begin_anew(storage::Time since, storage::Time found) {
@@ -62,12 +58,14 @@ void ChangeFinder::begin_anew(storage::Time since, storage::Time found) {
 void ChangeFinder::add(const Block& block, const BlockScore& score, int regime, int mode) {
   if (!std::isfinite(mean_log_root(score.square, score.noise))) return;
   so_far_.add(block, score.square);
-  Errors& of_regime = regimes_[regime];
   AllErrors& all = modes_[mode];
-  const bool grow_in_regime = of_regime.add(block, score), grow = all.add(block, score);
-  if (grow_in_regime) return begin_anew(of_regime.calm_until, block.range.end);
-  if (!grow || all.sums.blocks < blocks_of_cycle) return;
-  if (fail(all.sums, so_far_)) return begin_anew(all.errors.calm_until, block.range.end);
+  all.sums.add(block, score.square);
+  if (!all.since) all.since = all.errors.add(block, score);
+  if (!all.since && all.errors.growth.is_calm()) all.sums = {};
+  if (const auto since = regimes_[regime].add(block, score))
+    return begin_anew(*since, block.range.end);
+  if (!all.since || all.sums.blocks < blocks_of_cycle) return;
+  if (fail(all.sums, so_far_)) return begin_anew(*all.since, block.range.end);
   all.sums = {};
 }
 

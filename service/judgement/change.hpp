@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "identification/statistics/error_growth.hpp"
 #include "service/judgement/scores.hpp"
@@ -33,18 +34,15 @@ class ChangeFinder {
  private:
   struct Errors {
     identification::ErrorGrowth growth{blocks_of_cycle};
-    storage::Time calm_until = INT64_MIN;
+    std::vector<storage::Time> begins{};  // of the blocks since they were calm
 
-    /// Whether growth is found with the block.
-    bool add(const storage::Block& block, const storage::BlockScore& score);
+    /// Begin of the growth that is found with the block, if any is.
+    std::optional<storage::Time> add(const storage::Block& block, const storage::BlockScore& score);
   };
   struct AllErrors {
     Errors errors;
-    bool have_grown = false;
+    std::optional<storage::Time> since;  // begin of their growth, once it is found
     Sums sums;  // since they were calm, or since the model was last found of use
-
-    /// Whether growth is found with the block, or was.
-    bool add(const storage::Block& block, const storage::BlockScore& score);
   };
   void begin_anew(storage::Time since, storage::Time found);
 

@@ -46,6 +46,35 @@ TEST(ChangeDetector, FindsErrorsThatDoubleWithinThirtyBlocks) {
   EXPECT_GT(within_thirty, 980);
 }
 
+TEST(ChangeDetector, SaysWithHowManyBlocksAChangeMayHaveBegun) {
+  // Errors rise a little before they jump, double, or one block stands out of errors that doubled.
+  const struct {
+    const char* name;
+    double before, behind, last;
+    double most;  // blocks that are too many, in the mean
+  } cases[] = {{"jump", 0.3, 5, 5, 1},
+               {"doubled", 0, std::log(2), std::log(2), 8},
+               {"outlier", 0, std::log(2), 20, 8}};
+  for (const auto& c : cases) {
+    test::Noise noise(55);
+    int missed = 0, found = 0;
+    double early = 0;
+    for (int i = 0; i < 500; ++i) {
+      ChangeDetector detector(reference(noise, 32));
+      for (int k = 0; k < 8; ++k)
+        if (detector.add(c.before + deviation * noise.normal())) detector.add(-50);
+      int blocks = 1;
+      while (!detector.add((blocks == 6 ? c.last : c.behind) + deviation * noise.normal()))
+        ++blocks;
+      ++found;
+      missed += detector.blocks_since() < blocks;
+      early += std::max<double>(0, double(detector.blocks_since() - blocks));
+    }
+    EXPECT_LE(missed, found / 5) << c.name;
+    EXPECT_LE(early / found, c.most) << c.name;
+  }
+}
+
 TEST(ChangeDetector, NoSingleBlockIsAChange) {
   test::Noise noise(53);
   ChangeDetector detector(reference(noise, 16));
