@@ -7,6 +7,7 @@
 #include "identification/numerics/decompositions.hpp"
 #include "identification/search/delay_search.hpp"
 #include "identification/search/delays.hpp"
+#include "identification/search/drift.hpp"
 #include "identification/search/finite_check.hpp"
 #include "identification/search/horizons.hpp"
 #include "identification/search/pipeline.hpp"
@@ -144,17 +145,14 @@ IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
   return with;
 }
 
-}  // namespace
-
-IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
-                        LagSums* kept) {
-  assert(mistakes(options).empty() && record.y.cols() >= 1);
-  assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+/// Identifies from the rows, as the options say of regimes and delays.
+IdentifyResult identify_rows(const Record& record, RowRange rows, const IdentifyOptions& options,
+                             LagSums* kept) {
   if (options.regime_inputs > 0)
     return identify_with_regimes(
         record, rows, options, kept,
         [rows](const Record& own, const IdentifyOptions& own_options, LagSums* own_kept) {
-          return identify(own, rows, own_options, own_kept);
+          return identify_rows(own, rows, own_options, own_kept);
         });
   if (record.u.cols() == 0) return run_pipeline(record, rows, options, kept);
   if (!options.input_delays.empty()) {
@@ -163,6 +161,19 @@ IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptio
   }
   if (options.max_input_delay != 0) return identify_with_shown_delays(record, rows, options, kept);
   return run_pipeline(record, rows, options, kept);
+}
+
+}  // namespace
+
+IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptions& options,
+                        LagSums* kept) {
+  assert(mistakes(options).empty() && record.y.cols() >= 1);
+  assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
+  return identify_despite_drift(
+      record, rows, options, kept,
+      [&options](const Record& own, RowRange own_rows, LagSums* own_kept) {
+        return identify_rows(own, own_rows, options, own_kept);
+      });
 }
 
 }  // namespace reident::identification

@@ -41,6 +41,9 @@ struct Recipe {
   /// The order of the refined model of which so many modes are left, without those that the rows
   /// miss least; 0: none is taken out.
   int eliminated_from = 0;
+  /// Above 0: the model is that of inputs and outputs without the cosines of up to so many half
+  /// periods over the rows (METHOD.md, section 7, "Drift").
+  int drift_half_periods = 0;
   /// Returns the order of the model that the subspace gives.
   int subspace_order() const { return eliminated_from > 0 ? eliminated_from : order; }
 };

@@ -63,6 +63,7 @@ ordered_json recipe_json(const identification::Identified& identified) {
                        {"operating_point", recent ? "recent" : "whole"},
                        {"refinement_steps", recipe.refinement_steps},
                        {"eliminated_from", recipe.eliminated_from},
+                       {"drift_half_periods", recipe.drift_half_periods},
                        {"weighted", recipe.weighted},
                        {"stability", enforced ? "enforced" : "as_found"},
                        {"input_delays", identified.input_delays},

@@ -37,6 +37,8 @@ std::string method_text(const identification::Recipe& recipe) {
   if (recipe.refinement_steps > 0) text += ", refined";
   if (recipe.weighted) text += ", outputs by their errors";
   if (recipe.eliminated_from > 0) text += fmt::format(", left of order {}", recipe.eliminated_from);
+  if (recipe.drift_half_periods > 0)
+    text += fmt::format(", without {} half periods of drift", recipe.drift_half_periods);
   if (recipe.stability == identification::Stability::enforced) text += ", A made stable";
   return text;
 }

@@ -40,7 +40,8 @@ bool same(const Recipe& a, const Recipe& b) {
          a.stability == b.stability && a.fit == b.fit && a.direct == b.direct &&
          a.operating_point == b.operating_point && a.refinement_steps == b.refinement_steps &&
          a.refined_rows == b.refined_rows && a.eliminated_from == b.eliminated_from &&
-         a.weighted == b.weighted && a.least_rate == b.least_rate;
+         a.drift_half_periods == b.drift_half_periods && a.weighted == b.weighted &&
+         a.least_rate == b.least_rate;
 }
 
 bool same(const Identified& a, const Identified& b) {
