@@ -109,14 +109,12 @@ class DriftingRows {
                                     : std::vector<Fold>{{fitted_, {fitted_.end, rows.size()}}};
   }
 
-  /// Returns the model that takes the place of `result`, where one does.
-  std::optional<Identified> without_drift(const IdentifyResult& result,
+  /// Returns the model that takes the place of one `with` drifts, where one does.
+  std::optional<Identified> without_drift(const Identified& with,
                                           const IdentificationOf& identify_from) const {
-    const auto* with = std::get_if<Identified>(&result);
-    Matrix left =
-        with ? residuals(with_outputs_times(with->model, deviations_.cwiseInverse())) : record_.y;
-    Errors least{with ? with->held_out_error.value_or(0) : 1, log_unforetold(left, ranges())};
-    double work = with ? with->search_work : 0;
+    Matrix left = residuals(with_outputs_times(with.model, deviations_.cwiseInverse()));
+    Errors least{*with.held_out_error, log_unforetold(left, ranges())};
+    double work = with.search_work;
     std::optional<Identified> best;
     const int most =
         static_cast<int>(std::min<Index>(most_half_periods, fitted_.size() / rows_of_half_period));
@@ -202,13 +200,11 @@ IdentifyResult identify_despite_drift(const Record& record, RowRange rows,
                                       const IdentifyOptions& options, LagSums* kept,
                                       const IdentificationOf& identify_from) {
   IdentifyResult result = identify_from(record, rows, kept);
-  if (options.order || record.u.cols() == 0) return result;
-  const auto* found = std::get_if<Identified>(&result);
-  const bool may_drift = found ? found->held_out_error.has_value()
-                               : std::get<Verdict>(result).code == VerdictCode::no_better_than_mean;
-  if (!may_drift) return result;
-  if (auto other = DriftingRows(record, rows, options).without_drift(result, identify_from))
-    return *std::move(other);
+  auto* found = std::get_if<Identified>(&result);
+  const bool was_chosen = found && !options.order && found->held_out_error.value_or(0) > no_error;
+  if (was_chosen && record.u.cols() > 0)
+    if (auto other = DriftingRows(record, rows, options).without_drift(*found, identify_from))
+      *found = *std::move(other);
   return result;
 }
 

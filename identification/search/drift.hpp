@@ -11,9 +11,9 @@ namespace reident::identification {
 /// Identifies from rows of the record, which has the channels that the options are about.
 using IdentificationOf = std::function<IdentifyResult(const Record&, RowRange rows, LagSums* kept)>;
 
-/// Returns the model that `identify_from` gives. Where no input drives slow modes and most of its
-/// errors are slower than the rows are long, returns that of the rows without what is so slow in
-/// inputs and outputs, unless that errs more on the record.
+/// Returns what `identify_from` gives. Where the model's errors are slow, takes the model of inputs
+/// and outputs without what is so slow, if that leaves less which the errors' past does not
+/// foretell and does not lose as much on rows held out. Not with an order that is given.
 IdentifyResult identify_despite_drift(const Record& record, RowRange rows,
                                       const IdentifyOptions& options, LagSums* kept,
                                       const IdentificationOf& identify_from);

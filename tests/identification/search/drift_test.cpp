@@ -40,7 +40,7 @@ struct Kind {
 
 const Kind kinds[] = {
     {"ramp", 4, [](double share, double) { return share; }},
-    {"season", 2, [](double share, double phase) { return 0.5 * std::sin(4.4 * share + phase); }},
+    {"season", 1, [](double share, double phase) { return 0.5 * std::sin(4.4 * share + phase); }},
     {"settling", 4, [](double share, double) { return std::exp(-3 * share); }},
 };
 
