@@ -140,6 +140,8 @@ class DriftingRows {
     best->search_work = work;
     best->warnings.push_back(sentence_on(*best));
     best->model = with_outputs_times(std::move(best->model), deviations_);
+    if (best->gain_uncertainty)
+      *best->gain_uncertainty = deviations_.asDiagonal() * *best->gain_uncertainty;
     return best;
   }
 

@@ -55,6 +55,8 @@ struct IdentifyOptions {
   /// What the choice may spend, in multiply-adds of free runs and regressions: with it the search
   /// is as thorough as the rows allow, and the same on every machine. Positive.
   double search_budget = 6e8;
+  /// Whether Identified::gain_uncertainty is asked for.
+  bool wants_gain_uncertainty = false;
   /// Runs the independent parts of the search; absent: one after the other. The result does not
   /// depend on it.
   ForEach for_each;
@@ -92,6 +94,8 @@ struct Identified {
   /// Error of the choice: root mean square in deviations of the outputs, over all folds. Absent
   /// where nothing was to be chosen.
   std::optional<double> held_out_error;
+  /// gain_uncertainty() (p x m), where it was asked for and there is one.
+  std::optional<Matrix> gain_uncertainty;
   /// Where IdentifyOptions::regime_inputs asked for one.
   std::optional<RegimeChoice> regimes;
   double search_work = 0;  // spent of the budget

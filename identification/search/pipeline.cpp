@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "identification/fit/gain_uncertainty.hpp"
 #include "identification/search/closed_loop.hpp"
 #include "identification/search/inseparable_inputs.hpp"
 #include "identification/search/prepared_rows.hpp"
@@ -59,6 +60,9 @@ IdentifyResult run(PreparedRows rows) {
   if (found && found->held_out_error)
     if (auto verdict = closed_loop_verdict(rows, *found, found->warnings))
       return *std::move(verdict);
+  if (found && options.wants_gain_uncertainty)
+    found->gain_uncertainty =
+        gain_uncertainty(found->model, found->recipe.direct, rows.record(), rows.fitted());
   if (found)
     for (std::string& sentence : inseparable_inputs(rows, *found))
       found->warnings.push_back(std::move(sentence));

@@ -67,6 +67,8 @@ void widen(Identified& identified, const Places& places, const Record& record, R
   const auto u = record.u.middleRows(rows.begin, rows.size());
   model.B = widened(model.B);
   model.D = widened(model.D);
+  if (identified.gain_uncertainty)
+    identified.gain_uncertainty = widened(*identified.gain_uncertainty);
   Vector u0 = u.colwise().mean();
   for (std::size_t i = 0; i < places.size(); ++i) u0(places[i]) = model.u0(Index(i));
   model.u0 = u0;

@@ -113,14 +113,19 @@ std::string gains_text(const IdentifyOutcome& outcome) {
         "identification rows {:.3g} s\n",
         slowest_mode_s(model), rows_s(outcome));
   std::string text;
+  const auto& uncertainty = outcome.identified.gain_uncertainty;
   const auto& regimes = outcome.identified.regimes;
   const std::size_t inputs =
       outcome.inputs.size() - (regimes && !regimes->are_used ? outcome.regime_inputs : 0);
   for (std::size_t q = 0; q < outcome.outputs.size(); ++q) {
     text += fmt::format("gains at rest to {}:", outcome.outputs[q]);
-    for (std::size_t i = 0; i < inputs; ++i)
-      text += fmt::format("{} {} {:.4g}", i == 0 ? "" : ",", outcome.inputs[i],
-                          (*gain)(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(i)));
+    for (std::size_t i = 0; i < inputs; ++i) {
+      const auto row = static_cast<Eigen::Index>(q), column = static_cast<Eigen::Index>(i);
+      text +=
+          fmt::format("{} {} {:.4g}", i == 0 ? "" : ",", outcome.inputs[i], (*gain)(row, column));
+      if (uncertainty && (*uncertainty)(row, column) > 0)
+        text += fmt::format(" +-{:.2g}", (*uncertainty)(row, column));
+    }
     text += "\n";
   }
   return text;
@@ -149,6 +154,11 @@ ordered_json regimes_json(const IdentifyOutcome& outcome) {
 ordered_json gains_json(const IdentifyOutcome& outcome) {
   const auto gain = shown_gain(outcome);
   return gain ? to_json(*gain) : ordered_json();
+}
+
+ordered_json gain_uncertainty_json(const IdentifyOutcome& outcome) {
+  const auto& uncertainty = outcome.identified.gain_uncertainty;
+  return uncertainty && shown_gain(outcome) ? to_json(*uncertainty) : ordered_json();
 }
 
 ordered_json derived_json(const std::vector<DerivedInput>& derived) {
@@ -189,6 +199,7 @@ std::string to_json_text(const IdentifyOutcome& outcome) {
       {"input_offset", to_json(model.u0)},
       {"output_offset", to_json(model.y0)},
       {"static_gain", gains_json(outcome)},
+      {"static_gain_uncertainty", gain_uncertainty_json(outcome)},
       {"stable", outcome.identified.spectral_radius < 1},
       {"spectral_radius", outcome.identified.spectral_radius},
       {"mrse_percent",

@@ -287,6 +287,7 @@ int run(const Arguments& arguments) {
   };
   options.on_phase = [&timer](std::string_view phase) { timer.begin(phase); };
   options.input_names = data.inputs;
+  options.wants_gain_uncertainty = true;
   options.regime_inputs = data.regime_inputs;
   options.output_names = data.outputs;
   auto result = arguments.data.screening

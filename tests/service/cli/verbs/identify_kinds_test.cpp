@@ -221,5 +221,20 @@ TEST_F(IdentifyKinds, AnotherZeroOrGainAndAnInputThatSaturatesAreNamed) {
   EXPECT_THAT(warnings_of(0, 0.4), HasSubstr("y is not linear in u"));
 }
 
+TEST_F(IdentifyKinds, AGainAtRestComesWithWhatItMayBeOffBy) {
+  double x = 0;
+  write("slow.csv", stepped("u,y", 3000, [&](int, double u, double noise) {
+          const double y = x + 0.05 * noise;
+          x += (u - x) / 100;
+          return fmt::format("{:.5f}", y);
+        }));
+  const json printed = json_of({"identify", "slow.csv", "--input", "u", "--output", "y"});
+  const double off = printed["static_gain_uncertainty"][0][0];
+  EXPECT_LT(off, 0.1);
+  EXPECT_NEAR(printed["static_gain"][0][0], 1, 2 * off);
+  EXPECT_THAT(reident({"identify", "slow.csv", "--input", "u", "--output", "y"}).out,
+              HasSubstr(fmt::format(" +-{:.2g}", off)));
+}
+
 }  // namespace
 }  // namespace reident::cli::identify_kinds_test
