@@ -15,8 +15,8 @@ namespace {
 constexpr Index highest_order = 20;
 constexpr double affordable = 4e8;  // multiply-adds of the products of the sensitivities
 constexpr Index least_rows = 500;
-/// Of a column's square. A change of the basis of the states changes no output: its sensitivity is
-/// rounding. Other combinations of which as little shows are as good as unknown.
+/// Share of a column's square. A change of the basis of the states changes no output: its
+/// sensitivity is rounding. Other combinations of which as little shows are as good as unknown.
 constexpr double ridge = 1e-13;
 constexpr double deviations_told = 2;  // 95 %
 

@@ -89,7 +89,7 @@ Matrix solve_full_lu(const Matrix& A, const Matrix& B) {
 
 std::optional<Matrix> solve_full_lu(const Matrix& A, const Matrix& B, double least_rcond) {
   const Eigen::FullPivLU<Matrix> lu(A);
-  // Of a singular matrix rcond() is no estimate.
+  // Eigen's rcond() is no estimate where the matrix is singular.
   if (!lu.isInvertible() || !(lu.rcond() > least_rcond)) return std::nullopt;
   return Matrix(lu.solve(B));
 }

@@ -59,14 +59,8 @@ double log_unforetold(const Matrix& errors, const std::vector<RowRange>& segment
   double sum = 0;
   for (Index q = 0; q < errors.cols(); ++q) {
     const Vector own = errors.col(q), past = burg_coefficients(own, segments);
-    double squares = 0, count = 0;
-    for (const RowRange& segment : segments)
-      for (Index row = segment.begin + past.size(); row < segment.end; ++row) {
-        const double foretold = past.dot(own.segment(row - past.size(), past.size()).reverse());
-        squares += (own(row) - foretold) * (own(row) - foretold);
-        ++count;
-      }
-    sum += std::log(squares / count);
+    const Innovations left = innovations_of(own, past, segments);
+    sum += std::log(left.squares / double(left.rows));
   }
   return sum / double(errors.cols());
 }
@@ -109,9 +103,10 @@ class DriftingRows {
                                     : std::vector<Fold>{{fitted_, {fitted_.end, rows.size()}}};
   }
 
-  /// Returns the model that takes the place of one `with` drifts, where one does.
+  /// Returns the model that takes the place of `with`, which may have followed drifts; absent
+  /// where none does.
   std::optional<Identified> without_drift(const Identified& with,
-                                          const IdentificationOf& identify_from) const {
+                                          const Identification& identify_from) const {
     Matrix left = residuals(with_outputs_times(with.model, deviations_.cwiseInverse()));
     Errors least{*with.held_out_error, log_unforetold(left, ranges())};
     double work = with.search_work;
@@ -124,7 +119,7 @@ class DriftingRows {
       Record less = record_;
       less.u = slow.without(record_.u);
       less.y = slow.without(record_.y);
-      IdentifyResult other = identify_from(less, less.all(), nullptr);
+      IdentifyResult other = identify_from(less, less.all(), options_, nullptr);
       auto* found = std::get_if<Identified>(&other);
       if (!found) break;
       work += found->search_work;
@@ -200,8 +195,8 @@ class DriftingRows {
 
 IdentifyResult identify_despite_drift(const Record& record, RowRange rows,
                                       const IdentifyOptions& options, LagSums* kept,
-                                      const IdentificationOf& identify_from) {
-  IdentifyResult result = identify_from(record, rows, kept);
+                                      const Identification& identify_from) {
+  IdentifyResult result = identify_from(record, rows, options, kept);
   auto* found = std::get_if<Identified>(&result);
   const bool was_chosen = found && !options.order && found->held_out_error.value_or(0) > no_error;
   if (was_chosen && record.u.cols() > 0)

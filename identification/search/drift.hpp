@@ -2,20 +2,15 @@
 // here throws but what the caller's functions throw.
 #pragma once
 
-#include <functional>
-
-#include "identification/search/identify.hpp"
+#include "identification/search/pipeline.hpp"
 
 namespace reident::identification {
-
-/// Identifies from rows of the record, which has the channels that the options are about.
-using IdentificationOf = std::function<IdentifyResult(const Record&, RowRange rows, LagSums* kept)>;
 
 /// Returns what `identify_from` gives. Where the model's errors are slow, takes the model of inputs
 /// and outputs without what is so slow, if that leaves less which the errors' past does not
 /// foretell and does not lose as much on rows held out. Not with an order that is given.
 IdentifyResult identify_despite_drift(const Record& record, RowRange rows,
                                       const IdentifyOptions& options, LagSums* kept,
-                                      const IdentificationOf& identify_from);
+                                      const Identification& identify_from);
 
 }  // namespace reident::identification

@@ -149,11 +149,7 @@ IdentifyResult identify_with_shown_delays(const Record& record, RowRange rows,
 IdentifyResult identify_rows(const Record& record, RowRange rows, const IdentifyOptions& options,
                              LagSums* kept) {
   if (options.regime_inputs > 0)
-    return identify_with_regimes(
-        record, rows, options, kept,
-        [rows](const Record& own, const IdentifyOptions& own_options, LagSums* own_kept) {
-          return identify_rows(own, rows, own_options, own_kept);
-        });
+    return identify_with_regimes(record, rows, options, kept, identify_rows);
   if (record.u.cols() == 0) return run_pipeline(record, rows, options, kept);
   if (!options.input_delays.empty()) {
     if (auto verdict = non_finite_values(record, rows, options)) return *verdict;
@@ -169,11 +165,7 @@ IdentifyResult identify(const Record& record, RowRange rows, const IdentifyOptio
                         LagSums* kept) {
   assert(mistakes(options).empty() && record.y.cols() >= 1);
   assert(rows.begin >= 0 && rows.begin <= rows.end && rows.end <= record.rows());
-  return identify_despite_drift(
-      record, rows, options, kept,
-      [&options](const Record& own, RowRange own_rows, LagSums* own_kept) {
-        return identify_rows(own, own_rows, options, own_kept);
-      });
+  return identify_despite_drift(record, rows, options, kept, identify_rows);
 }
 
 }  // namespace reident::identification

@@ -26,19 +26,6 @@ double rows_behind(Index first, const std::vector<Segment>& segments) {
   return rows;
 }
 
-double squares_of_white(const Vector& errors, const ErrorColour& colour,
-                        const std::vector<Segment>& segments) {
-  const Vector& a = colour.past.coefficients.back();
-  double sum = 0;
-  for (const Segment& segment : segments)
-    for (Index t = segment.begin + a.size(); t < segment.end; ++t) {
-      double w = errors(t);
-      for (Index i = 0; i < a.size(); ++i) w -= a(i) * errors(t - 1 - i);
-      sum += w * w;
-    }
-  return sum;
-}
-
 /// A row for each of the mixtures of outputs whose errors are uncorrelated. Where outputs are
 /// linear in one another, mixtures without errors are among them.
 Matrix uncorrelated_mixtures(const Matrix& errors) {
@@ -155,10 +142,13 @@ Vector RicherFit::whitened_squares(const Response& fit, bool direct,
   const Response white =
       refine_whitened(mixed(fit, mixtures_), direct, mixed_, rows_, most, colours, least_rate_);
   const Matrix errors = errors_of(white, mixed_, rows_);
-  const std::vector<Segment> segments = segments_from(mixed_, rows_);
+  const std::vector<RowRange> segments = ranges_from(mixed_, rows_);
   Vector squares(errors.cols());
   for (Index q = 0; q < errors.cols(); ++q)
-    squares(q) = squares_of_white(errors.col(q), colours[static_cast<std::size_t>(q)], segments);
+    squares(q) =
+        innovations_of(errors.col(q), colours[static_cast<std::size_t>(q)].past.coefficients.back(),
+                       segments)
+            .squares;
   return squares;
 }
 

@@ -2,6 +2,8 @@
 // Private to this folder. Nothing here throws but what the caller's functions throw.
 #pragma once
 
+#include <functional>
+
 #include "identification/search/identify.hpp"
 
 namespace reident::identification {
@@ -10,5 +12,9 @@ namespace reident::identification {
 /// "choose" and, for each model that is realised, "identify".
 IdentifyResult run_pipeline(const Record& record, RowRange rows, const IdentifyOptions& options,
                             LagSums* kept);
+
+/// What does as much: identify() itself, or a part of it.
+using Identification = std::function<IdentifyResult(const Record&, RowRange rows,
+                                                    const IdentifyOptions& options, LagSums* kept)>;
 
 }  // namespace reident::identification

@@ -43,9 +43,9 @@ std::vector<T> selected(const std::vector<T>& all, const Places& places) {
   return chosen;
 }
 
-IdentifyResult identify_from_inputs(const Record& record, const IdentifyOptions& options,
-                                    const Places& places, LagSums* kept,
-                                    const Identification& identify_from) {
+IdentifyResult identify_from_inputs(const Record& record, RowRange rows,
+                                    const IdentifyOptions& options, const Places& places,
+                                    LagSums* kept, const Identification& identify_from) {
   const bool is_all = std::ssize(places) == record.u.cols();
   Record narrow = record;
   narrow.u = record.u(Eigen::all, places);
@@ -53,7 +53,7 @@ IdentifyResult identify_from_inputs(const Record& record, const IdentifyOptions&
   own.regime_inputs = 0;
   own.input_names = selected(options.input_names, places);
   own.input_delays = selected(options.input_delays, places);
-  return identify_from(narrow, own, is_all ? kept : nullptr);
+  return identify_from(narrow, rows, own, is_all ? kept : nullptr);
 }
 
 /// A model with the inputs of the record, of which it has those at `places`.
@@ -94,7 +94,7 @@ IdentifyResult identify_with_regimes(const Record& record, RowRange rows,
   RegimeChoice choice;
   double work = 0;
   const auto with = [&](const Places& places, const IdentifyOptions& own) {
-    return identify_from_inputs(record, own, places, kept, identify_from);
+    return identify_from_inputs(record, rows, own, places, kept, identify_from);
   };
   const auto error_of = [&work](const IdentifyResult& result) -> std::optional<double> {
     const auto* found = std::get_if<Identified>(&result);

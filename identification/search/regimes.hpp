@@ -3,15 +3,9 @@
 // throw.
 #pragma once
 
-#include <functional>
-
-#include "identification/search/identify.hpp"
+#include "identification/search/pipeline.hpp"
 
 namespace reident::identification {
-
-/// Identifies from the inputs that `options` are about.
-using Identification =
-    std::function<IdentifyResult(const Record&, const IdentifyOptions& options, LagSums* kept)>;
 
 /// Returns the model of all inputs where it errs at least 5 % less on held-out rows than the one
 /// without the last `options.regime_inputs`, and else that one, in which these have no effect.

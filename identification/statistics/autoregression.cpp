@@ -61,4 +61,16 @@ Vector burg_coefficients(const Vector& values, const std::vector<RowRange>& segm
   return past;
 }
 
+Innovations innovations_of(const Vector& values, const Vector& coefficients,
+                           const std::vector<RowRange>& segments) {
+  Innovations found;
+  for (const RowRange& segment : segments)
+    for (Index t = segment.begin + coefficients.size(); t < segment.end; ++t, ++found.rows) {
+      double left = values(t);
+      for (Index i = 0; i < coefficients.size(); ++i) left -= coefficients(i) * values(t - 1 - i);
+      found.squares += left * left;
+    }
+  return found;
+}
+
 }  // namespace reident::identification

@@ -31,4 +31,14 @@ Autoregression autoregression(Series& series);
 /// first. One of the least BIC misses what drifts below other noise.
 Vector burg_coefficients(const Vector& values, const std::vector<RowRange>& segments);
 
+/// What the past of a series leaves of it, over the rows that have as much past.
+struct Innovations {
+  double squares = 0;  // their sum
+  Index rows = 0;
+};
+
+/// Returns them for the coefficients of an autoregression, that of the latest value first.
+Innovations innovations_of(const Vector& values, const Vector& coefficients,
+                           const std::vector<RowRange>& segments);
+
 }  // namespace reident::identification
