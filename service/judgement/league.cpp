@@ -43,12 +43,18 @@ void Judge::take_in(const League& league) {
     identification::InputRanges ranges;
     if (counts(block)) ranges = {block.input_low, block.input_high};
     modes_.add(ranges.of(regime_places(ranges.low.size(), limits_->regime_inputs)));
-    if (regimes_.add(std::move(ranges))) change_ = {}, first = 0;  // as where modes are others
+    if (regimes_.add(std::move(ranges)))
+      change_ = change_of_replaced_ = {}, first = 0;  // as where modes are others
   }
-  for_each_score(league, *league.champion, INT64_MIN, first,
-                 [&](std::size_t i, const Block& block, const BlockScore& score) {
-                   change_.add(block, score, regimes_.numbers()[i], modes_.numbers()[i]);
-                 });
+  const auto look_at = [&](const Member& member, ChangeFinder& changes) {
+    for_each_score(league, member, INT64_MIN, first,
+                   [&](std::size_t i, const Block& block, const BlockScore& score) {
+                     changes.add(block, score, regimes_.numbers()[i], modes_.numbers()[i]);
+                   });
+  };
+  look_at(*league.champion, change_);
+  for (const Member& member : league.challengers)
+    if (member.version == league.replaced) look_at(member, change_of_replaced_);
   const auto& change = change_.last();
   if (const Time since = change ? change->since : league.champion->window.begin; since != since_) {
     since_ = since;
@@ -76,9 +82,13 @@ const Comparison& Judge::comparison(const League& league, const Member& one, con
   return found;
 }
 
-/// Whichever is later: the change in the champion's record, or that in an earlier one's.
+/// Whichever is latest: the change in the champion's record, that in the record of the one that it
+/// replaced, or that from before the champion was made.
 Time Judge::changed(const League& league) const {
-  return std::max(league.changed, change_.last() ? change_.last()->since : INT64_MIN);
+  Time latest = league.changed;
+  for (const ChangeFinder* record : {&change_, &change_of_replaced_})
+    if (record->last()) latest = std::max(latest, record->last()->since);
+  return latest;
 }
 
 /// Dependence of the scores of the two members with the longest records, or of those from before
@@ -91,9 +101,8 @@ double Judge::usual_dependence(const League& league) {
   if (members.size() < 2) return 0;
   std::ranges::partial_sort(members, members.begin() + 2, {},
                             [](const Member* member) { return member->window.end; });
-  return std::max(
-      bet_on(comparison(league, *members[0], *members[1]).scores.values(), 0).dependence(),
-      dependence_before(league));
+  const Comparison& longest = comparison(league, *members[0], *members[1]);
+  return std::max(bet_on(longest.scores.values(), 0).dependence(), dependence_before(league));
 }
 
 /// The largest dependence of the challengers' scores between the last change and the one before:
@@ -205,13 +214,11 @@ std::optional<Reason> Judge::failure(const League& league) {
   if (const Sums& own = compared_.own; !(own.fit_percent() > 0)) {
     const Eigen::ArrayXd mean = own.y / own.rows;
     Comparison with_mean;
-    std::vector<double> square;
     for_each_score(league, *league.champion, since_, 0,
                    [&](std::size_t i, const Block& block, const BlockScore& score) {
-                     square = block.output_square;
+                     std::vector<double> square = block.output_square;
                      for (std::size_t q = 0; q < square.size(); ++q)
-                       square[q] += mean[std::ptrdiff_t(q)] *
-                                    (mean[std::ptrdiff_t(q)] - 2 * block.output_mean[q]);
+                       square[q] += mean.data()[q] * (mean.data()[q] - 2 * block.output_mean[q]);
                      with_mean.add(i, block, score, score, square);
                    });
     if (auto reason = fails_against("a constant at the mean", with_mean)) return reason;

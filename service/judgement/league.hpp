@@ -133,7 +133,7 @@ class Judge {
   const EquipmentConfig* limits_;
   std::optional<std::int64_t> champion_;  // that the rest is about
   identification::OperatingRegimes regimes_{blocks_of_cycle}, modes_{blocks_of_cycle};
-  ChangeFinder change_;
+  ChangeFinder change_, change_of_replaced_;
   storage::Time since_ = INT64_MIN;  // records count from here on
   std::size_t seen_ = 0;             // blocks that were looked at
   Compared compared_;

@@ -209,11 +209,11 @@ Finding judge_first(const League& league, const Member& member, const EquipmentC
     const double error = is_known ? simulator.one.mrse_percent() : finding.mrse_percent;
     const double rival =
         is_known ? finding.baseline_mrse_percent : limits.baseline_mrse_percent.value_or(INFINITY);
-    const bool is_better = is_known ? finding.log_wealth > finding.log_threshold &&
-                                          error < less_by_margin(rival, limits)
-                                    : error < rival;
-    return is_better ? std::nullopt
-                     : std::optional(because<Code::not_better_than_simulator>(error, rival));
+    if (is_known
+            ? finding.log_wealth > finding.log_threshold && error < less_by_margin(rival, limits)
+            : error < rival)
+      return std::nullopt;
+    return because<Code::not_better_than_simulator>(error, rival);
   }();
   return finding;
 }

@@ -15,10 +15,8 @@ SensorPast::SensorPast(std::size_t place, std::size_t biases, const PhasedScores
     means_[phase] += *effect_in(*score);
     ++counts[phase];
   }
-  for (std::size_t phase = 0; phase < counts.size(); ++phase) {
-    if (counts[phase] == 0) return;
-    means_[phase] /= counts[phase];
-  }
+  if (std::ranges::count(counts, 0) > 0) return;
+  for (std::size_t phase = 0; phase < counts.size(); ++phase) means_[phase] /= counts[phase];
   double square = 0;
   for (std::size_t i = blocks_of_cycle; i <= scores.size(); i += blocks_of_cycle) {
     double sum = 0;

@@ -11,8 +11,8 @@ using storage::BlockScore;
 
 std::size_t phase_of(const Block& block) {
   const storage::Time length = std::max<storage::Time>(1, block.range.end - block.range.begin);
-  const storage::Time phase = block.range.begin / length % blocks_of_cycle;
-  return static_cast<std::size_t>(phase < 0 ? phase + blocks_of_cycle : phase);
+  const storage::Time place = block.range.begin / length % blocks_of_cycle;  // may be negative
+  return static_cast<std::size_t>(place + blocks_of_cycle) % blocks_of_cycle;
 }
 
 bool counts(const Block& block) {

@@ -67,6 +67,11 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
   record.league.biases =
       biases_of(signal_names(story.model.inputs), derived_inputs(story.model.inputs));
   std::vector<storage::VersionSummary> waiting = history.summaries(equipment);
+  if (made && made->kind == storage::DecisionKind::approve && made->actor == "gate") {
+    for (const storage::VersionSummary& one : waiting)
+      if (one.number == *rival) record.league.replaced = one.parent;
+    record.league.replaced_at = judged_until(*made).value_or(INT64_MIN);
+  }
   std::erase_if(waiting, [](const auto& one) { return one.status != "waiting"; });
   storage::HistoryFilter versions;
   versions.spacecraft = equipment.spacecraft;
@@ -80,7 +85,8 @@ std::optional<StoredRecord> stored_record(const history::HistoryReader& history,
                                    [number](const auto& one) { return one.number == number; });
     if (number == *rival)
       record.league.champion = member_of(history, equipment, number, attempt.window);
-    else if (number == version.number || (waits && version.status == "waiting"))
+    else if (number == version.number || number == record.league.replaced ||
+             (waits && version.status == "waiting"))
       record.league.challengers.push_back(member_of(history, equipment, number, attempt.window));
   }
   if (!record.league.champion || record.league.champion->scores.empty() ||
