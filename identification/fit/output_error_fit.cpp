@@ -72,23 +72,6 @@ Columns columns_of(const StateSpaceModel& dynamics, bool direct) {
   return {dynamics.order(), dynamics.inputs(), dynamics.outputs(), direct, false};
 }
 
-Fitted fit(const NormalEquations& sums, const StateSpaceModel& dynamics, bool direct,
-           const Target& target, Accuracy accuracy) {
-  const Columns columns = columns_of(dynamics, direct);
-  if (const auto solution = sums.solve(0, least_pivot(accuracy)))
-    return from(*solution, columns, dynamics);
-  if (accuracy == Accuracy::fast)
-    if (const auto solution = sums.solve_without_small(least_pivot(accuracy)))
-      return from(*solution, columns, dynamics);
-  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, target, {});
-  return from(factor.solve(), columns, dynamics);
-}
-
-Fitted fit(const StateSpaceModel& dynamics, bool direct, const Target& target, Accuracy accuracy) {
-  const auto sums = accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, target, {});
-  return fit(sums, dynamics, direct, target, accuracy);
-}
-
 /// The outputs over the segments, which follow each other.
 Matrix outputs_of(const Fitted& fitted, const Record& record,
                   const std::vector<Segment>& segments) {
@@ -108,6 +91,43 @@ double correlated_rows_of_errors(const Fitted& fitted, const Record& record, Row
   return most_correlated_rows(
       record.y.middleRows(rows.begin, rows.size()) - outputs_of(fitted, record, segments),
       ranges_from(record, rows));
+}
+
+/// Variance of an error, times the rows of errors that count as one: what an estimate's variance is
+/// made of. Absent where there are no more rows than unknowns.
+std::optional<double> variance_of_errors(const Fitted& fitted, const Columns& columns,
+                                         const Target& target) {
+  const RowRange rows{target.segments.front().begin, target.segments.back().end};
+  const double known = double(rows.size() * columns.p - (columns.target() - columns.n)) -
+                       double(columns.n) * double(target.segments.size());
+  if (known < 1) return std::nullopt;
+  const double rows_as_one =
+      target.colours.empty()
+          ? correlated_rows_of_errors(fitted, target.record, rows, target.segments)
+          : 1;
+  return fitted.sum_of_squares / known * rows_as_one;
+}
+
+Fitted fit(const NormalEquations& sums, const StateSpaceModel& dynamics, bool direct,
+           const Target& target, Accuracy accuracy) {
+  const Columns columns = columns_of(dynamics, direct);
+  // Small pivots show a bad condition, but not every bad condition has one.
+  const double pivot = least_pivot(accuracy),
+               rcond = accuracy == Accuracy::fast ? 0 : pivot * pivot;
+  if (const auto solution = sums.solve(0, pivot, rcond)) return from(*solution, columns, dynamics);
+  if (accuracy == Accuracy::fast)
+    if (const auto solution = sums.solve_without_small(pivot))
+      return from(*solution, columns, dynamics);
+  const auto factor = accumulate<OrthogonalFactor>(columns, dynamics, target, {});
+  Fitted full = from(factor.solve(), columns, dynamics);
+  if (accuracy == Accuracy::fast) return full;
+  const auto variance = variance_of_errors(full, columns, target);
+  return variance ? from(factor.solve_with_prior(*variance), columns, dynamics) : full;
+}
+
+Fitted fit(const StateSpaceModel& dynamics, bool direct, const Target& target, Accuracy accuracy) {
+  const auto sums = accumulate<NormalEquations>(columns_of(dynamics, direct), dynamics, target, {});
+  return fit(sums, dynamics, direct, target, accuracy);
 }
 
 Response response_of(const Fitted& fitted, Index rows) {
@@ -184,12 +204,10 @@ Response fit_change(const Matrix& A, const Matrix& C, const Record& record, RowR
   const Target target{record, segments, unknown};
   const auto sums = accumulate<NormalEquations>(columns, dynamics, target, {});
   const Fitted full = fit(sums, dynamics, true, target, Accuracy::fast);
-  const Index told = rows.size() * columns.p - (columns.target() - columns.n) -
-                     columns.n * static_cast<Index>(segments.size());
-  if (told < 1) return response_of({dynamics, {}, 0}, rows.size());
-  const double variance = full.sum_of_squares / static_cast<double>(told) *
-                          correlated_rows_of_errors(full, record, rows, segments);
-  const auto shrunk = sums.solve_shrunk(squared_deviations * variance, least_pivot(Accuracy::fast));
+  const auto variance = variance_of_errors(full, columns, target);
+  if (!variance) return response_of({dynamics, {}, 0}, rows.size());
+  const auto shrunk =
+      sums.solve_shrunk(squared_deviations * *variance, least_pivot(Accuracy::fast));
   return response_of(shrunk ? from(*shrunk, columns, dynamics) : full, rows.size());
 }
 

@@ -120,7 +120,8 @@ Vector inverse_roots(const Vector& values) {
 
 }  // namespace
 
-std::optional<RegressionSolution> NormalEquations::solve(double damping, double least_pivot) const {
+std::optional<RegressionSolution> NormalEquations::solve(double damping, double least_pivot,
+                                                         double least_rcond) const {
   const Index n = columns_.n, unknowns = columns_.target() - n;
   Vector weight = sums_.diagonal().head(unknowns);
   const auto damp = [&](Index begin, Index count) {
@@ -134,7 +135,7 @@ std::optional<RegressionSolution> NormalEquations::solve(double damping, double 
   G.diagonal() = weight;
   const Vector scale = inverse_roots(weight);
   G = (scale.asDiagonal() * G * scale.asDiagonal()).eval();
-  const auto cholesky = Cholesky::of(G, least_pivot);
+  const auto cholesky = Cholesky::of(G, least_pivot, least_rcond);
   if (!cholesky) return std::nullopt;
 
   const Vector target = sums_.col(unknowns).head(unknowns);
@@ -269,9 +270,36 @@ void OrthogonalFactor::end_segment() {
 }
 
 RegressionSolution OrthogonalFactor::solve() const {
-  const Index n = columns_.n, unknowns = columns_.target() - n;
+  const Index unknowns = columns_.target() - columns_.n;
+  return solution_of(solve_least_norm(factor_.leftCols(unknowns), Vector(factor_.col(unknowns))));
+}
+
+RegressionSolution OrthogonalFactor::solve_with_prior(double variance) const {
+  constexpr double surely = 16;  // squared deviations
+  constexpr double rounding = 1e-13;
+  const Index unknowns = columns_.target() - columns_.n;
+  const Vector target = factor_.col(unknowns);
+  const Vector scale =
+      inverse_roots(factor_.leftCols(unknowns).colwise().squaredNorm().transpose());
+  const Matrix scaled = factor_.leftCols(unknowns) * scale.asDiagonal();
+  const auto [components, sizes] = left_singular(scaled.transpose(), SingularVectors::thin);
+  const double square = target.squaredNorm(),
+               ridge = square > 0 ? double(unknowns) * variance / square : 0;
+  Vector coefficients = Vector::Zero(sizes.size());
+  for (Index i = 0; i < sizes.size(); ++i) {
+    const double size = sizes(i);
+    if (!(size > rounding)) continue;
+    const double explained = target.dot(scaled * components.col(i)) / size;
+    coefficients(i) = explained * explained > surely * variance
+                          ? explained / size
+                          : explained * size / (size * size + ridge);
+  }
+  return solution_of(scale.asDiagonal() * (components * coefficients));
+}
+
+RegressionSolution OrthogonalFactor::solution_of(const Vector& found) const {
+  const Index n = columns_.n, unknowns = found.size();
   RegressionSolution solution{Vector::Zero(columns_.target()), {}, 0};
-  const Vector found = solve_least_norm(factor_.leftCols(unknowns), Vector(factor_.col(unknowns)));
   solution.theta.tail(unknowns) = found;
   solution.sum_of_squares =
       (factor_.col(unknowns) - factor_.leftCols(unknowns) * found).squaredNorm();

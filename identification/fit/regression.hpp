@@ -71,8 +71,10 @@ class NormalEquations {
 
   /// Solves with the moves of the dynamics weighted down by `damping` times their own sums of
   /// squares. Absent when too few digits are left: when the square of `least_pivot` is more than
-  /// the share that a column has for its own, the others known.
-  std::optional<RegressionSolution> solve(double damping, double least_pivot) const;
+  /// the share that a column has for its own, those before it known, or `least_rcond` more than the
+  /// reciprocal condition number of the columns' sums, each scaled to 1.
+  std::optional<RegressionSolution> solve(double damping, double least_pivot,
+                                          double least_rcond = 0) const;
 
   /// Solves without the combinations of columns, each scaled to size 1, that are smaller than
   /// `least_size`; of least norm in this scale. Absent where these would show: where a thousandth
@@ -124,8 +126,15 @@ class OrthogonalFactor {
   void end_segment();
   /// Solves for the segments that have ended; there is always a solution.
   RegressionSolution solve() const;
+  /// Solves likewise where the target's errors have this `variance`. A principal component of the
+  /// columns, scaled to size 1, whose coefficient is beyond four deviations has that of least
+  /// squares. That of another is the likeliest one where the columns are as likely as not to move
+  /// the target, by equal parts, as far as it goes: what the rows do not show is near zero.
+  RegressionSolution solve_with_prior(double variance) const;
 
  private:
+  /// The solution with `found` for the columns after x0, and what the initial states are then.
+  RegressionSolution solution_of(const Vector& found) const;
   /// Takes the waiting rows into the factor of the open segment.
   void fold();
 

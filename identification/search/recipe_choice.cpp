@@ -39,19 +39,19 @@ std::optional<Verdict> limit_by_excitation(PreparedRows& rows, SearchSpace& spac
   const int horizon = space.horizons.back();
   const Excitation excitation = excitation_of(Projection(rows.factor(horizon)).input_innovations());
   if (excitation.order >= horizon) return std::nullopt;
-  const std::string weakest = rows.input_name(
-      rows.normalisation().inputs[static_cast<std::size_t>(excitation.weakest_input)]);
+  const std::string strongest = rows.input_name(
+      rows.normalisation().inputs[static_cast<std::size_t>(excitation.strongest_input)]);
   const int highest = static_cast<int>(excitation.order) - 1;
   if (highest < space.min_order)
     return Verdict{VerdictCode::insufficient_excitation,
-                   weakest + " follows from its own past and the other inputs after " +
+                   strongest + " follows from its own past and the other inputs after " +
                        std::to_string(excitation.order) + " samples, but order " +
                        std::to_string(space.min_order) + " needs " +
                        std::to_string(space.min_order + 1) +
                        "; choose a window in which it moves more freely"};
   if (highest < space.max_order) {
     space.max_order = highest;
-    warnings.push_back(weakest + " excites no order above " + std::to_string(highest));
+    warnings.push_back(strongest + " excites no order above " + std::to_string(highest));
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "identification/numerics/decompositions.hpp"
 #include "identification/simulation/free_run.hpp"
 #include "identification/simulation/prediction.hpp"
 
@@ -59,33 +60,40 @@ std::vector<InputCorrelation> input_correlations(std::vector<Series>& inputs,
   return result;
 }
 
-/// Without what is linear in the input; absent where nothing else is there.
-std::optional<Series> without_linear(const Vector& bend, const Series& input) {
+/// Without what is linear in the inputs; absent where nothing else is there.
+std::optional<Series> without_linear(const Vector& bend, const std::vector<const Series*>& inputs) {
   constexpr double least_share = 1e-3;
-  const Vector& u = input.centred();
+  Matrix u(bend.size(), std::ssize(inputs));
+  for (Index j = 0; j < u.cols(); ++j) u.col(j) = inputs[static_cast<std::size_t>(j)]->centred();
   const Vector moves = bend.array() - bend.mean();
-  const Vector left = moves - u * (moves.dot(u) / u.squaredNorm());
+  const Vector left = moves - u * solve_least_norm(u, moves);
   if (!(left.squaredNorm() > least_share * moves.squaredNorm())) return std::nullopt;
-  return Series(left, input.segments());
+  return Series(left, inputs.front()->segments());
 }
 
 }  // namespace
 
-std::vector<InputCorrelation> bends(const Record& record, RowRange scored, const Matrix& y_hat) {
+std::vector<Bend> bends(const Record& record, RowRange scored, const Matrix& y_hat) {
   const Scored part = scored_part(record, scored);
   std::vector<Series> residuals = residuals_of(part, y_hat);
-  std::vector<InputCorrelation> result;
-  for (std::size_t q = 0; q < residuals.size(); ++q)
-    for (std::size_t j = 0; j < part.inputs.size(); ++j) {
-      const Vector& u = part.inputs[j].centred();
-      InputCorrelation found{static_cast<Index>(j), static_cast<Index>(q), {}};
-      for (const Vector& bend : {Vector(u.cwiseAbs2()), Vector(u.cwiseProduct(u.cwiseAbs()))})
-        if (auto series = without_linear(bend, part.inputs[j]))
-          if (const auto one = summary(cross_correlogram(*series, residuals[q], lags));
-              std::abs(one.largest) > std::abs(found.correlation.largest))
-            found.correlation = one;
-      result.push_back(found);
-    }
+  std::vector<Bend> result(residuals.size());
+  const auto look_at = [&](std::size_t j, std::size_t k, const Vector& bend) {
+    std::vector<const Series*> inputs{&part.inputs[j]};
+    if (k != j) inputs.push_back(&part.inputs[k]);
+    auto series = without_linear(bend, inputs);
+    for (std::size_t q = 0; series && q < residuals.size(); ++q)
+      if (const auto found = summary(cross_correlogram(*series, residuals[q], lags));
+          found.lag >= 0 && std::abs(found.largest) > std::abs(result[q].correlation.largest))
+        result[q] = {static_cast<Index>(j), static_cast<Index>(k), found};
+  };
+  const std::size_t inputs = part.inputs.size();
+  for (std::size_t j = 0; j < inputs; ++j) {
+    const Vector& u = part.inputs[j].centred();
+    look_at(j, j, u.cwiseAbs2());
+    look_at(j, j, u.cwiseProduct(u.cwiseAbs()));
+    for (std::size_t k = j + 1; k < inputs && inputs <= most_products; ++k)
+      look_at(j, k, u.cwiseProduct(part.inputs[k].centred()));
+  }
   return result;
 }
 

@@ -63,11 +63,19 @@ struct Diagnostics {
 Diagnostics diagnose(const StateSpaceModel& model, const Record& record, RowRange run,
                      RowRange scored, const std::optional<Vector>& x0 = std::nullopt);
 
-/// Returns, by outputs, then inputs, the correlation of the free run's residuals with what an input
-/// does about its mean that is not linear in it: its square, or its product with its size,
-/// whichever is larger. An equipment that saturates, has a dead zone or answers a square shows it.
-/// Inputs of two values have none: with those no lags are looked at. `y_hat` (N x p) is the free
-/// run over the rows `scored`.
-std::vector<InputCorrelation> bends(const Record& record, RowRange scored, const Matrix& y_hat);
+/// What inputs do about their means that is not linear in them: the square of one, its product with
+/// its size, or the product of two.
+struct Bend {
+  Index input = 0;
+  Index other = 0;  // `input` where it is of one alone
+  CorrelationSummary correlation;
+};
+
+/// Returns for each output the bend that follows its residuals best, at the lags 0 to 25. An
+/// equipment that saturates, has a dead zone, answers a square or a power shows it. An input of two
+/// values has none of its own, and products are looked at with at most `most_products` inputs: with
+/// no bend no lags are looked at. `y_hat` (N x p) is the free run over the rows `scored`.
+inline constexpr Index most_products = 8;
+std::vector<Bend> bends(const Record& record, RowRange scored, const Matrix& y_hat);
 
 }  // namespace reident::identification

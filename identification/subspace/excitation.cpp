@@ -37,13 +37,12 @@ bool are_independent(const Matrix& correlation) {
 
 Excitation excitation_of(const Matrix& input_innovations) {
   constexpr double least_innovation = 1e-7;
-  for (Index k = 0; k < input_innovations.rows(); ++k) {
-    Index weakest = 0;
-    if (input_innovations.cols() > 0 &&
-        input_innovations.row(k).minCoeff(&weakest) < least_innovation)
-      return {k, weakest};
+  Excitation excitation;
+  for (Index strongest = 0; excitation.order < input_innovations.rows(); ++excitation.order) {
+    if (input_innovations.row(excitation.order).maxCoeff(&strongest) < least_innovation) break;
+    excitation.strongest_input = strongest;
   }
-  return {input_innovations.rows(), 0};
+  return excitation;
 }
 
 }  // namespace reident::identification

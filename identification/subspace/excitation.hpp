@@ -22,14 +22,14 @@ std::vector<RedundantInput> redundant_inputs(const Matrix& u);
 /// their correlations (m x m). Where not, redundant_inputs() decides.
 bool are_independent(const Matrix& correlation);
 
-/// How many block rows the inputs excite persistently, and the input that ends it.
+/// How many block rows the inputs excite persistently, and the input that excites the last of them.
 struct Excitation {
   Index order = 0;
-  Index weakest_input = 0;
+  Index strongest_input = 0;
 };
 
 /// Returns the excitation from the deviations of Projection::input_innovations() (horizon x m) of
-/// normalised inputs: a block row counts while each of its innovations is at least 1e-7.
+/// normalised inputs: a block row counts while one of its innovations is at least 1e-7.
 Excitation excitation_of(const Matrix& input_innovations);
 
 }  // namespace reident::identification

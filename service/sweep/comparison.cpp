@@ -151,7 +151,7 @@ Regrets ServedVersions::regrets(TimeRange range, Duration cycle) const {
   }
   for (const storage::VersionSummary& version : registry_.summaries(spacecraft, equipment)) {
     const auto stored = registry_.version(spacecraft, equipment, version.number);
-    if (mistake_in(*stored)) continue;
+    if (stored->window.end > range.end || mistake_in(*stored)) continue;
     const auto model = equipment_model_from_json(stored->model_json);
     const Time record = std::max(range.begin, model.validated_on.begin);
     for (const BlockScore& score :

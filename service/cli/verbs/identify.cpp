@@ -138,19 +138,29 @@ void warn_of_states(const IdentifyData& data, RowRange rows, bool from_x0,
         segments, identification::state_rows));
 }
 
-void warn_of_bends(const std::vector<identification::InputCorrelation>& bends,
-                   IdentifyOutcome& outcome) {
+/// A sentence for each output of which a bend of inputs would explain much of what is `left`.
+std::vector<std::string> bend_sentences(const std::vector<identification::Bend>& bends,
+                                        const IdentifyData& data, std::string_view left) {
   constexpr double worth_a_word = 0.4;  // a sixth of what is left
-  for (const auto& [input, output, found] : bends)
-    if (found.lags > 0 && found.lag >= 0 && found.significant() &&
-        std::abs(found.largest) > worth_a_word)
-      outcome.warnings.push_back(fmt::format(
-          "{} is not linear in {}: the square of this, or its product with its size, would explain "
-          "{:.2g} % of what the free run leaves; --derive an input that {} is linear in, or "
-          "--regime",
-          outcome.outputs[static_cast<std::size_t>(output)],
-          outcome.inputs[static_cast<std::size_t>(input)], 100 * found.largest * found.largest,
-          outcome.outputs[static_cast<std::size_t>(output)]));
+  std::vector<std::string> sentences;
+  for (std::size_t q = 0; q < bends.size(); ++q) {
+    const auto& [input, other, found] = bends[q];
+    if (found.lags == 0 || !found.significant() || std::abs(found.largest) <= worth_a_word)
+      continue;
+    const std::string &y = data.outputs[q], &u = data.inputs[static_cast<std::size_t>(input)],
+                      &by = data.inputs[static_cast<std::size_t>(other)];
+    const std::string share =
+        fmt::format("would explain {:.2g} % of {}", 100 * found.largest * found.largest, left);
+    sentences.push_back(
+        input == other
+            ? fmt::format("{} is not linear in {}: the square of this, or its product with its "
+                          "size, {}; --derive an input that {} is linear in, or --regime",
+                          y, u, share, y)
+            : fmt::format("{} is not linear in {} and {}: their product {}; --derive it as an "
+                          "input, such as \"P={}*{}\", or --regime",
+                          y, u, by, share, u, by));
+  }
+  return sentences;
 }
 
 /// `y_hat` is the free run over `rows`.
@@ -197,11 +207,11 @@ void score_outcome(const IdentifyData& data, IdentifyOutcome& outcome) {
              : diagnose(identified.model, data.record, run, data.validate, identified.x0);
   const identification::Matrix y_hat = free_run(identified.model, data.record, run, identified.x0);
   const RowRange validate = data.validate;
-  warn_of_bends(
-      bends(data.record, validate,
-            before ? free_run(identified.model, data.record, validate)
-                   : y_hat.middleRows(validate.begin - run.begin, validate.size()).eval()),
-      outcome);
+  const auto found = bends(data.record, validate,
+                           before ? free_run(identified.model, data.record, validate)
+                                  : y_hat.middleRows(validate.begin - run.begin, validate.size()));
+  for (std::string& sentence : bend_sentences(found, data, "what the free run leaves"))
+    outcome.warnings.push_back(std::move(sentence));
   warn_of_shifts(data, run, y_hat, outcome);
 }
 
@@ -214,6 +224,13 @@ int print_rejection(const Verdict& verdict, const Arguments& arguments, const Id
     advice += fmt::format(
         "; --delay {} takes as many rows from the begin, and those whose inputs would be in a gap",
         fmt::join(arguments.model.delays, " "));
+  if (verdict.code == identification::VerdictCode::no_better_than_mean) {
+    const RowRange rows = data.identify;
+    const auto found =
+        bends(data.record, rows, identification::Matrix::Zero(rows.size(), data.record.y.cols()));
+    for (const std::string& sentence : bend_sentences(found, data, "its moves about its mean"))
+      advice += "; " + sentence;
+  }
   const std::vector<std::string> left_out = left_out_sentences(data);
   if (arguments.json) {
     const nlohmann::ordered_json object = {{"rejected", name(verdict.code)},

@@ -77,6 +77,26 @@ TEST(Diagnostics, AnInputThatSaturatesOrActsBySquaresBends) {
   EXPECT_LT(std::abs(bend_of([](double u) { return u; }).largest), 0.2);
 }
 
+TEST(Diagnostics, OutputsThatAnswerAPowerShowTheProductOfItsInputs) {
+  test::Noise noise(9);
+  for (const double share : {0.0, 1.0}) {
+    StateSpaceModel plant = test::random_system(noise, 1, 1, 1, 0.9);
+    const Matrix u = noise.normal(1000, 3);
+    const Matrix power = u.col(0) + share * u.col(0).cwiseProduct(u.col(2));
+    const Record acting = contiguous_record(1, power, Matrix::Zero(1000, 1));
+    const Matrix y = free_run(plant, acting, acting.all(), Vector::Zero(1));
+    const Record record = contiguous_record(1, u, y + 0.01 * noise.normal(1000, 1));
+    const Record linear = contiguous_record(1, u.leftCols(1), Matrix::Zero(1000, 1));
+    const Matrix y_hat = free_run(plant, linear, linear.all(), Vector::Zero(1));
+    const Bend found = bends(record, {200, 1000}, y_hat.bottomRows(800)).at(0);
+    EXPECT_EQ(found.correlation.significant() && std::abs(found.correlation.largest) > 0.4,
+              share > 0);
+    if (share > 0) {
+      EXPECT_EQ(std::pair(found.input, found.other), std::pair(Index{0}, Index{2}));
+    }
+  }
+}
+
 TEST(Diagnostics, AnInputOfTwoValuesCannotBend) {
   test::Noise noise(8);
   const Plant plant = innovations(noise, 1000, 1);

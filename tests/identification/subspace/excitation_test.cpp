@@ -27,12 +27,15 @@ TEST(Redundancy, ASumWithNoiseOfItsOwnIsKept) {
   EXPECT_THAT(redundant_inputs(u), IsEmpty());
 }
 
-TEST(Excitation, CountsBlockRowsUpToTheFirstForetoldInput) {
+TEST(Excitation, CountsBlockRowsUntilAllInputsAreForetold) {
   Matrix innovations = Matrix::Ones(5, 2);
   EXPECT_EQ(excitation_of(innovations).order, 5);
   innovations(3, 1) = 1e-12;
-  EXPECT_EQ(excitation_of(innovations).order, 3);
-  EXPECT_EQ(excitation_of(innovations).weakest_input, 1);
+  EXPECT_EQ(excitation_of(innovations).order, 5);
+  innovations.col(1).tail(2).setConstant(1e-12);
+  innovations(4, 0) = 1e-12;
+  EXPECT_EQ(excitation_of(innovations).order, 4);
+  EXPECT_EQ(excitation_of(innovations).strongest_input, 0);
 }
 
 }  // namespace

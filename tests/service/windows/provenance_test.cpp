@@ -67,7 +67,7 @@ TEST_F(Provenance, IsEnoughForAVersionThatTheChampionWasAdaptedTo) {
   WindowCache kept = window_cache_of("SAT", plant());
   record(day + 10 * minute, kept);
   registry.decide("SAT", "PLANT", 1, {storage::DecisionKind::approve, "Ana", ""}, day);
-  archive.append(telemetry(day + 901 * second, 600, 1.5));
+  archive.append(telemetry(day + 901 * second, 600, 1.5, 0.3));  // noise spoils a new A and C
   const storage::Version version = record(day + 25 * minute, kept);
   ASSERT_EQ(nlohmann::json::parse(version.provenance_json).value("adapted_from", 0), 1)
       << registry.attempt(version.attempt)->evidence_json;
