@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include <fmt/format.h>
 
 #include "service/model/glossary.hpp"
+#include "service/support/time_text.hpp"
 
 namespace reident {
 namespace {
@@ -58,6 +60,8 @@ std::string offset(const Finding& finding) {
 std::string over_regimes(const Finding& finding) {
   const auto [own, champion] = finding.over_regimes_mrse_percent;
   std::string text = champion > 0 ? fmt::format("{:.3g} % against {:.3g} %", own, champion) : "";
+  if (champion > 0 && finding.changed != INT64_MIN)
+    text += " since the change of " + time_text(finding.changed);
   const auto [before, change] = finding.before_change_mrse_percent;
   if (before > 0)
     text += fmt::format("; before the change {:.3g} %, explained by it {:.3g} %", before, change);

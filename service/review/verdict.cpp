@@ -34,6 +34,7 @@ Finding finding_in(const nlohmann::ordered_json& evidence) {
   read("mrse_percent", finding.mrse_percent);
   read("champion_mrse_percent", finding.champion_mrse_percent);
   read("fit_percent", finding.fit_percent);
+  read("changed_ns", finding.changed);
   return finding;
 }
 

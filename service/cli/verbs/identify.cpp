@@ -1,6 +1,7 @@
 #include "identification/search/identify.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -358,9 +359,17 @@ std::function<int()> declare(CLI::App& command) {
                   "where held-out rows show that this helps; a column of few values has a regime "
                   "for each")
       ->allow_extra_args(false);
-  command.add_option(
-      "--period", arguments->data.period_s,
-      "seconds between rows, or of the grid with --time (the usual step of the slowest column)");
+  command
+      .add_option("--period", arguments->data.period_s,
+                  "from row to row, in seconds or such as 100ms, or of the grid with --time (the "
+                  "usual step of the slowest column)")
+      ->type_name("DURATION")
+      ->transform([](const std::string& text) {
+        const bool has_unit =
+            !text.empty() && std::isalpha(static_cast<unsigned char>(text.back()));
+        const auto ns = has_unit ? parse_duration(text) : std::nullopt;
+        return ns ? fmt::format("{:.17g}", static_cast<double>(*ns) * 1e-9) : text;
+      });
   command
       .add_option(
           "--hold", arguments->hold,

@@ -1,6 +1,6 @@
 #include "service/review/conditions.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace reident {
 namespace {
@@ -56,6 +56,10 @@ TEST(Conditions, ErrorsOverTheRegimesAreShownWhereTheyAreKnown) {
   EXPECT_EQ(found(), "2.5 % against 1.25 %");
   finding.before_change_mrse_percent = {3, 1.5};
   EXPECT_EQ(found(), "2.5 % against 1.25 %; before the change 3 %, explained by it 1.5 %");
+  finding.changed = 1'510'444'800'000'000'000;
+  EXPECT_THAT(
+      found(),
+      testing::StartsWith("2.5 % against 1.25 % since the change of 2017-11-12T00:00:00Z; before"));
 }
 
 }  // namespace

@@ -221,6 +221,19 @@ TEST_F(IdentifyKinds, AnotherZeroOrGainAndAnInputThatSaturatesAreNamed) {
   EXPECT_THAT(warnings_of(0, 0.4), HasSubstr("y is not linear in u"));
 }
 
+TEST_F(IdentifyKinds, ASquareThatNoLinearModelFollowsIsNamed) {
+  double x = 0;
+  write("heat.csv", stepped("u,y", 900, [&](int, double u, double noise) {
+          const double y = x + 0.01 * noise;
+          x = 0.9 * x + 0.1 * u * u;
+          return fmt::format("{:.5f}", y);
+        }));
+  const auto ran = reident({"identify", "heat.csv", "--input", "u", "--output", "y"});
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_THAT(ran.err, ::testing::AllOf(HasSubstr("no_better_than_mean"),
+                                        HasSubstr("y is not linear in u: the square")));
+}
+
 TEST_F(IdentifyKinds, AGainAtRestComesWithWhatItMayBeOffBy) {
   double x = 0;
   write("slow.csv", stepped("u,y", 3000, [&](int, double u, double noise) {

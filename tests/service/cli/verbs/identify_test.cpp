@@ -364,7 +364,7 @@ TEST_F(Identify, DiagnosesTheModelOnTheValidationRows) {
 
 TEST_F(Identify, PrintsTheContinuousTimeModelOfTheSamePeriod) {
   write("plant.csv", csv_of(plant(900)));
-  const json printed = json_of(command({"--order", "2", "--period", "0.5"}));
+  const json printed = json_of(command({"--order", "2", "--period", "500ms"}));
   const MatrixXd A = matrix(printed["continuous"]["A"]);
   // The determinant of exp(A T) is exp(trace(A) T).
   EXPECT_NEAR(std::exp(0.5 * A.trace()), matrix(printed["A"]).determinant(), 1e-9);
