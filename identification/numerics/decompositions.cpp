@@ -1,6 +1,7 @@
 #include "identification/numerics/decompositions.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -149,6 +150,27 @@ Vector singular_values(const Matrix& A) {
 
 Eigen::Vector2d least_right_singular(const Eigen::Matrix2d& A) {
   return Eigen::JacobiSVD<Eigen::Matrix2d>(A, Eigen::ComputeFullV).matrixV().col(1);
+}
+
+Vector balancing(const Matrix& A) {
+  constexpr double worth_it = 0.95;
+  Matrix sizes = A.cwiseAbs();
+  sizes.diagonal().setZero();
+  Vector d = Vector::Ones(A.rows());
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Index i = 0; i < A.rows(); ++i) {
+      const double row = sizes.row(i).sum(), column = sizes.col(i).sum();
+      if (!(row > 0 && column > 0 && std::isfinite(row + column))) continue;
+      const double factor = std::exp2(std::round(std::log2(row / column) / 2));
+      if (!(row / factor + column * factor < worth_it * (row + column))) continue;
+      sizes.row(i) /= factor;
+      sizes.col(i) *= factor;
+      d(i) *= factor;
+      changed = true;
+    }
+  }
+  return d;
 }
 
 ComplexVector eigenvalues(const Matrix& A) {

@@ -84,6 +84,10 @@ Vector singular_values(const Matrix& A);
 /// The unit v for which |A v| is least.
 Eigen::Vector2d least_right_singular(const Eigen::Matrix2d& A);
 
+/// Powers of 2, d, with which row and column i of diag(d)^-1 A diag(d) have about the same size,
+/// for a square matrix (B. N. Parlett, C. Reinsch, Numerische Mathematik 13, 1969).
+Vector balancing(const Matrix& A);
+
 /// Eigenvalues of a square matrix, in no order.
 ComplexVector eigenvalues(const Matrix& A);
 /// Largest |eigenvalue| of a square matrix; 0 of an empty one, NaN where it is not finite.

@@ -25,9 +25,13 @@ std::optional<Matrix> static_gain(const StateSpaceModel& model) {
   constexpr double well_conditioned = 1e-10;
   const Index n = model.order();
   if (n == 0) return model.D;
-  const auto states = solve_full_lu(Matrix::Identity(n, n) - model.A, model.B, well_conditioned);
+  // States may differ much in size, which says nothing of the gain.
+  const Vector d = balancing(model.A), inverse = d.cwiseInverse();
+  const auto states =
+      solve_full_lu(Matrix::Identity(n, n) - inverse.asDiagonal() * model.A * d.asDiagonal(),
+                    inverse.asDiagonal() * model.B, well_conditioned);
   if (!states) return std::nullopt;
-  return model.C * *states + model.D;
+  return model.C * d.asDiagonal() * *states + model.D;
 }
 
 bool is_stable(const Matrix& A) {

@@ -223,13 +223,22 @@ std::optional<Refusal> derive_inputs(InputExpressions& expressions, IdentifyData
   return std::nullopt;
 }
 
-void warn_of_held_rows(IdentifyData& data) {
+/// How to have one row of so many: rows without times are all taken, whatever their period.
+std::string thinning(Index rows, double period_s, bool has_time) {
+  const double period = static_cast<double>(rows) * period_s;
+  return has_time ? fmt::format("--period {:g} takes one row of each", period)
+                  : fmt::format(
+                        "name the times of the rows with --time, and --period {:g} takes one "
+                        "row of each; or keep one row of {} in the file",
+                        period, rows);
+}
+
+void warn_of_held_rows(IdentifyData& data, bool has_time) {
   const Index rows = rows_per_sample(data.record);
   if (rows > 1)
-    return data.warnings.push_back(fmt::format(
-        "each value stands for {} rows in every column: --period {:g} takes one row of each, which "
-        "is all that the file holds",
-        rows, static_cast<double>(rows) * data.record.period_s));
+    return data.warnings.push_back(
+        fmt::format("each value stands for {} rows in every column: {}, which is all that it holds",
+                    rows, thinning(rows, data.record.period_s, has_time)));
   Record alone{data.record.period_s,
                identification::Matrix(data.record.rows(), 0),
                {},
@@ -240,10 +249,9 @@ void warn_of_held_rows(IdentifyData& data) {
       data.warnings.push_back(fmt::format(
           "each value of {} stands for {} rows, in which other columns move: the model has the "
           "repeats in it, as a delay of {:g} rows on average and modes that are not the "
-          "equipment's; --period {:g} takes one row of each, and what the others do between is "
-          "lost",
+          "equipment's; {}, and what the others do between is lost",
           data.outputs[q], held, static_cast<double>(held - 1) / 2,
-          static_cast<double>(held) * data.record.period_s));
+          thinning(held, data.record.period_s, has_time)));
   }
 }
 
@@ -352,7 +360,7 @@ std::variant<IdentifyData, Refusal> read_data(const DataRequest& asked) {
   data.warnings.insert(data.warnings.end(), grid.warnings.begin(), grid.warnings.end());
   data.file_ticks = std::move(grid.tick_of_row);
   if (request.screening) data.left_out = leave_out_faults(data.record, columns);
-  warn_of_held_rows(data);
+  warn_of_held_rows(data, has_time);
   if (auto refusal = derive_inputs(expressions, data)) return *refusal;
   const auto record_row = [&](Index row) {
     return first_row_at(data.record, data.file_ticks[static_cast<std::size_t>(row)]);

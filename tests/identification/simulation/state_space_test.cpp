@@ -31,6 +31,19 @@ TEST(StateSpace, SlowestTimeConstantIsThatOfTheLargestModulus) {
   EXPECT_EQ(slowest_time_constant_s(model), 0);
 }
 
+TEST(StateSpace, StaticGainDoesNotDependOnTheSizeOfStates) {
+  test::Noise noise(2);
+  const StateSpaceModel model = test::random_system(noise, 4, 2, 2);
+  const Vector size{{1e-7, 1e3, 1, 1e7}};
+  StateSpaceModel scaled = model;
+  scaled.A = size.asDiagonal() * model.A * size.cwiseInverse().asDiagonal();
+  scaled.B = size.asDiagonal() * model.B;
+  scaled.C = model.C * size.cwiseInverse().asDiagonal();
+  const auto gain = static_gain(scaled);
+  ASSERT_TRUE(gain);
+  EXPECT_LT((*gain - *static_gain(model)).norm(), 1e-9);
+}
+
 TEST(StateSpace, StableMeansInsideTheUnitCircle) {
   EXPECT_TRUE(is_stable(Matrix::Identity(2, 2) * 0.999));
   EXPECT_FALSE(is_stable(Matrix::Identity(2, 2)));

@@ -95,6 +95,8 @@ TEST_F(IdentifyKinds, AnOutputThatIsHeldForSomeRowsIsNamed) {
       EXPECT_EQ(printed["warnings"].dump().find("y stands for 4 rows") != std::string::npos,
                 held == 4)
           << printed["warnings"];
+      EXPECT_EQ(printed["warnings"].dump().find("--time") != std::string::npos, held == 4)
+          << "without times all rows are taken, whatever their period";
     }
   }
 }
